@@ -1,0 +1,238 @@
+//! The maps of a side, each decoded and filtered by what it means.
+
+use std::{
+    ops::RangeInclusive,
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use half::f16;
+
+use super::{
+    ColourEncoding, MapError, NormalY, Pyramid, Texels,
+    decode::{Picture, Raster, Samples},
+    linear::Linear,
+    pyramid::{self, Texel},
+};
+
+/// Values that count as inside 0…1. ICC profiles round the nine numbers of their matrix to
+/// 1/65536 each, and those of the most widespread sRGB profile (HP, 1998) add up to a white of
+/// 1.0003; far below what can be seen, but half floats would then be coarser everywhere.
+const INSIDE: RangeInclusive<f32> = -1e-4..=1.001;
+
+/// Loads a map of colour as linear sRGB with alpha 1 (an alpha channel of the file is ignored),
+/// averaged in linear light. 16-bit texels where every value lies in 0…1, else half floats, so
+/// that colours outside sRGB keep their negative components; beyond ±65504 they are clamped.
+///
+/// # Errors
+/// As [`super::verify`].
+pub fn load_colour(path: &Path, encoding: ColourEncoding) -> Result<Pyramid, MapError> {
+    let raster = decode(path)?;
+    let linear = Linear::new(path, &raster, encoding)?;
+    let row = |y: usize, out: &mut [[f32; 4]]| linear.row(y, out);
+    Ok(finish(
+        &raster,
+        in_gamut(&raster, row, |[r, g, b, _]| [r, g, b, 1.0]),
+    ))
+}
+
+/// Loads a picture to lay over a side: linear sRGB multiplied by its alpha; otherwise as
+/// [`load_colour`].
+///
+/// # Errors
+/// As [`super::verify`].
+pub fn load_overlay_picture(path: &Path, encoding: ColourEncoding) -> Result<Pyramid, MapError> {
+    let mut raster = decode(path)?;
+    raster.unmultiply();
+    let linear = Linear::new(path, &raster, encoding)?;
+    let row = |y: usize, out: &mut [[f32; 4]]| {
+        linear.row(y, out);
+        for pixel in out {
+            let alpha = pixel[3].clamp(0.0, 1.0);
+            *pixel = [pixel[0] * alpha, pixel[1] * alpha, pixel[2] * alpha, alpha];
+        }
+    };
+    Ok(finish(&raster, in_gamut(&raster, row, |pixel| pixel)))
+}
+
+/// 16-bit texels where every value lies in 0…1, else half floats.
+fn in_gamut(
+    raster: &Raster,
+    row: impl Fn(usize, &mut [[f32; 4]]) + Sync,
+    paint: impl Fn([f32; 4]) -> [f32; 4] + Sync,
+) -> Pyramid {
+    let outside = AtomicBool::new(false);
+    let watched = |y: usize, out: &mut [[f32; 4]]| {
+        row(y, out);
+        if !out.as_flattened().iter().all(|v| INSIDE.contains(v)) {
+            outside.store(true, Ordering::Relaxed);
+        }
+    };
+    let pyramid = pyramid::build::<u16, 4, 4>(raster.size(), watched, &paint);
+    if !outside.into_inner() {
+        return pyramid;
+    }
+    drop(pyramid);
+    pyramid::build::<f16, 4, 4>(raster.size(), row, paint)
+}
+
+/// Loads a normal map as the x (right) and y (up) of unit normals; z is positive. Means of
+/// vectors are normalised again at every level. Integer files code −1…1 around their middle code
+/// (128 or 32768 is exactly 0), float files hold the components themselves. Normals without
+/// length, or that face away from the viewer, are flat. [`normal_coding`] says how the texels
+/// are to be read.
+///
+/// # Errors
+/// As [`super::verify`], and [`MapError::Unsupported`] for fewer than 3 channels.
+pub fn load_normal(path: &Path, y: NormalY) -> Result<Pyramid, MapError> {
+    let raster = decode(path)?;
+    if raster.channels < 3 {
+        return Err(MapError::unsupported(
+            path,
+            format!("has {} of the 3 channels of a normal map", raster.channels),
+            "name a normal map, or declare this file as height",
+        ));
+    }
+    let up = if y == NormalY::Up { 1.0 } else { -1.0 };
+    let pyramid = match raster.samples {
+        Samples::U8(_) => normals::<u8>(&raster, up, Coding::of_codes(255.0, 128.0)),
+        Samples::U16(_) => normals::<u16>(&raster, up, Coding::of_codes(65535.0, 32768.0)),
+        Samples::F32(_) => normals::<u16>(
+            &raster,
+            up,
+            Coding {
+                scale: 1.0,
+                offset: 0.0,
+            },
+        ),
+    };
+    Ok(finish(&raster, pyramid))
+}
+
+/// How a component of a normal follows from what a shader reads: `scale · stored + offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coding {
+    pub scale: f64,
+    pub offset: f64,
+}
+
+impl Coding {
+    /// The middle code is 0 and the highest 1; the lowest is just below −1 and clamped.
+    fn of_codes(top: f64, middle: f64) -> Self {
+        Self {
+            scale: top / (top - middle),
+            offset: -middle / (top - middle),
+        }
+    }
+
+    fn decode(self, stored: f32) -> f32 {
+        (self.scale * f64::from(stored) + self.offset).max(-1.0) as f32
+    }
+
+    fn encode(self, component: f32) -> f32 {
+        ((f64::from(component) - self.offset) / self.scale) as f32
+    }
+}
+
+/// How the texels of [`load_normal`] are coded.
+pub fn normal_coding(texels: &Texels) -> Coding {
+    match texels {
+        Texels::Unorm8(_) => Coding::of_codes(255.0, 128.0),
+        Texels::Unorm16(_) => Coding::of_codes(65535.0, 32768.0),
+        Texels::Half(_) => Coding {
+            scale: 1.0,
+            offset: 0.0,
+        },
+    }
+}
+
+fn normals<T: Texel>(raster: &Raster, up: f32, file: Coding) -> Pyramid {
+    let row = |y: usize, out: &mut [[f32; 3]]| {
+        raster.for_each_in_row(y, |x, [nx, ny, nz, _]| {
+            let [nx, ny, nz] = [nx, ny, nz].map(|v| file.decode(v));
+            out[x] = unit([nx, ny * up, nz]);
+        });
+    };
+    pack_normals::<T>(raster.size(), row)
+}
+
+/// The chain of a picture of unit normals, coded as [`normal_coding`] says.
+pub(super) fn pack_normals<T: Texel>(
+    size: [usize; 2],
+    row: impl Fn(usize, &mut [[f32; 3]]) + Sync,
+) -> Pyramid {
+    let texels = normal_coding(&T::wrap(Vec::new()));
+    pyramid::build::<T, 3, 2>(size, row, |mean| {
+        let [x, y, _] = unit(mean);
+        [texels.encode(x), texels.encode(y)]
+    })
+}
+
+/// The unit vector along a normal; flat where it has no length or no front.
+fn unit([x, y, z]: [f32; 3]) -> [f32; 3] {
+    /// Shorter ones are noise around an undefined direction.
+    const SHORTEST: f32 = 0.1;
+    let length = (x * x + y * y + z * z).sqrt();
+    if length > SHORTEST && length.is_finite() && z > 0.0 {
+        [x / length, y / length, z / length]
+    } else {
+        [0.0, 0.0, 1.0]
+    }
+}
+
+/// Loads a map of heights, or of any other quantity over a declared range: its first channel as
+/// 0…1 of that range, 16 bits. Floats outside are clamped.
+///
+/// # Errors
+/// As [`super::verify`].
+pub fn load_height(path: &Path) -> Result<Pyramid, MapError> {
+    let raster = decode(path)?;
+    Ok(finish(&raster, scalar::<u16>(&raster, |v, _| v)))
+}
+
+/// Loads a map of roughness, 0 smooth to 1 rough, from its first channel; where `gloss`, from a
+/// map in which white is smooth. 8 bits for files of 8 bits, else 16.
+///
+/// # Errors
+/// As [`super::verify`].
+pub fn load_roughness(path: &Path, gloss: bool) -> Result<Pyramid, MapError> {
+    let raster = decode(path)?;
+    let value = |v: f32, _| if gloss { 1.0 - v } else { v };
+    let pyramid = match raster.samples {
+        Samples::U8(_) => scalar::<u8>(&raster, value),
+        _ => scalar::<u16>(&raster, value),
+    };
+    Ok(finish(&raster, pyramid))
+}
+
+/// Loads an outline: how much of each texel is sheet, 8 bits, from the first channel (white is
+/// sheet) times alpha.
+///
+/// # Errors
+/// As [`super::verify`].
+pub fn load_outline(path: &Path) -> Result<Pyramid, MapError> {
+    let raster = decode(path)?;
+    Ok(finish(&raster, scalar::<u8>(&raster, |v, alpha| v * alpha)))
+}
+
+/// One channel from the first channel and alpha of each pixel, both within 0…1.
+fn scalar<T: Texel>(raster: &Raster, value: impl Fn(f32, f32) -> f32 + Sync) -> Pyramid {
+    let row = |y: usize, out: &mut [[f32; 1]]| {
+        raster.for_each_in_row(y, |x, pixel| {
+            let alpha = raster.alpha(pixel);
+            out[x] = [value(pixel[0].clamp(0.0, 1.0), alpha)];
+        });
+    };
+    pyramid::build::<T, 1, 1>(raster.size(), row, |mean| mean)
+}
+
+pub(super) fn decode(path: &Path) -> Result<Raster, MapError> {
+    Picture::open(path)?.decode()
+}
+
+pub(super) fn finish(raster: &Raster, pyramid: Pyramid) -> Pyramid {
+    Pyramid {
+        replaced: raster.replaced,
+        ..pyramid
+    }
+}

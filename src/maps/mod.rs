@@ -1,0 +1,84 @@
+//! Pixels in memory: reads PNG, JPEG, TIFF and OpenEXR, applies their colour profiles, and
+//! builds the mip chains that go to the graphics card, each kind of map filtered in its own way.
+//!
+//! | step | where |
+//! |---|---|
+//! | what a file is, without its pixels | [`probe`] |
+//! | file → raster at full depth | `decode` |
+//! | raster → linear sRGB | `icc`, [`load_colour`] |
+//! | raster → levels for the GPU | [`Pyramid`] |
+//! | pixels → file, whole or not at all | [`encode`] |
+//! | another picture's place on the sheet | [`registration`] |
+//!
+//! Rows run from the top of the picture, pixels from its left, channels interleaved.
+
+mod colour_map;
+mod decode;
+pub mod encode;
+mod error;
+mod header;
+mod icc;
+mod legend;
+mod linear;
+mod load;
+mod pyramid;
+pub mod registration;
+mod slope;
+pub mod surface;
+
+use serde::{Deserialize, Serialize};
+
+pub use error::MapError;
+pub use header::{Header, probe, verify, verify_colour};
+pub use legend::{
+    LegendMap, MAX_WEIGHTS, load_media_legend, load_media_weights, load_overlay_categorical,
+    load_overlay_continuous,
+};
+pub use load::{
+    Coding, load_colour, load_height, load_normal, load_outline, load_overlay_picture,
+    load_roughness, normal_coding,
+};
+pub use pyramid::{Level, Pyramid, Texels};
+pub use slope::load_normal_from_height;
+
+/// The largest width or height in pixels: what graphics cards take as a 2-D texture.
+pub const MAX_SIDE: u32 = 16384;
+
+/// How a colour map's values encode light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ColourEncoding {
+    /// By the embedded ICC profile; without one, sRGB for integers and linear for floats.
+    #[default]
+    Embedded,
+    /// The sRGB transfer function, any profile ignored.
+    Srgb,
+    /// Linear light in the sRGB primaries, any profile ignored.
+    Linear,
+}
+
+/// Which way a normal map's green channel points on the sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NormalY {
+    /// Towards the top of the picture (OpenGL).
+    #[default]
+    Up,
+    /// Towards the bottom of the picture (DirectX).
+    Down,
+}
+
+/// A colour map for continuous overlays, from low to high values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ColourMapName {
+    /// Dark violet over green to yellow.
+    #[default]
+    Viridis,
+    /// Black over magenta to cream.
+    Magma,
+    /// Dark blue to yellow, alike for red-green colour-blind eyes.
+    Cividis,
+    /// Black to white.
+    Grey,
+}

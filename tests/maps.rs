@@ -1,0 +1,73 @@
+//! Maps: files → pixels → mip chains, judged by closed forms and by real files.
+
+mod support;
+
+#[path = "maps/bnf.rs"]
+mod bnf;
+#[path = "maps/colour.rs"]
+mod colour;
+#[path = "maps/encode.rs"]
+mod encode;
+#[path = "maps/files.rs"]
+mod files;
+#[path = "maps/hostile.rs"]
+mod hostile;
+#[path = "maps/icc.rs"]
+mod icc;
+#[path = "maps/levels.rs"]
+mod levels;
+#[path = "maps/paper.rs"]
+mod paper;
+#[path = "maps/registration.rs"]
+mod registration;
+
+use std::path::PathBuf;
+
+use recto::maps::{Level, Pyramid};
+
+/// A folder that lives as long as the test.
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// One channel of a level.
+fn channel(pyramid: &Pyramid, level: usize, channel: usize) -> Vec<f32> {
+    let Level { texels, .. } = &pyramid.levels[level];
+    let stride = usize::from(pyramid.channels);
+    (channel..texels.len())
+        .step_by(stride)
+        .map(|i| texels.get(i).expect("inside"))
+        .collect()
+}
+
+fn mean(values: &[f32]) -> f64 {
+    values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len() as f64
+}
+
+/// Pearson's correlation coefficient.
+fn correlation(a: &[f32], b: &[f32]) -> f64 {
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+    for (&a, &b) in a.iter().zip(b) {
+        let (a, b) = (f64::from(a) - mean_a, f64::from(b) - mean_b);
+        ab += a * b;
+        aa += a * a;
+        bb += b * b;
+    }
+    ab / (aa * bb).sqrt()
+}
+
+/// Every file below a folder, in order.
+fn files_below(folder: &std::path::Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(files_below(&path));
+        } else {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}

@@ -1,0 +1,36 @@
+//! What several test files share.
+
+use std::path::PathBuf;
+
+/// A file or folder of the shared test data (`$RECTO_DATA`, or `../shared/data` beside the
+/// checkout). Where the whole data folder is absent, says that `test` is skipped and returns
+/// `None`; a missing file inside it fails the test.
+pub fn data(test: &str, path: &str) -> Option<PathBuf> {
+    let root = match std::env::var_os("RECTO_DATA") {
+        Some(root) => PathBuf::from(root),
+        None => PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")),
+    };
+    if !root.is_dir() {
+        eprintln!(
+            "skipped: {test} needs the test data, which is not in {}",
+            root.display()
+        );
+        return None;
+    }
+    let found = root.join(path);
+    assert!(
+        found.exists(),
+        "{} is missing from the test data",
+        found.display()
+    );
+    Some(found)
+}
+
+/// The module path and name of the test that calls it, for [`data`].
+#[macro_export]
+macro_rules! test_name {
+    () => {{
+        fn here() {}
+        std::any::type_name_of_val(&here).trim_end_matches("::here")
+    }};
+}
