@@ -1,0 +1,158 @@
+// What paper and ink do with light: twins, by name and order, of src/optics in f32.
+//
+// Plain WGSL: no directives, no textures, no bindings, so that the same text is parsed alone,
+// run in compute passes by the tests, and imported by paper_material.wgsl. Symbols, units and
+// sources stand with the f64 twins. Struct members must not end in a digit.
+
+const PI: f32 = 3.14159265358979;
+const ALPHA_MIN: f32 = 1e-4;
+const MU_MIN: f32 = 1e-4;
+const LENGTH_MIN: f32 = 1e-6;
+
+// Twins of src/optics/fresnel.rs
+
+fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
+    let c = clamp(cos_i, 0.0, 1.0);
+    let sin2_t = (1.0 - c * c) / (eta * eta);
+    if sin2_t >= 1.0 {
+        return 1.0;
+    }
+    let cos_t = sqrt(1.0 - sin2_t);
+    let r_s = (c - eta * cos_t) / (c + eta * cos_t);
+    let r_p = (eta * c - cos_t) / (eta * c + cos_t);
+    return 0.5 * (r_s * r_s + r_p * r_p);
+}
+
+fn fresnel_schlick(cos_i: f32, f_0: f32) -> f32 {
+    let m = clamp(1.0 - cos_i, 0.0, 1.0);
+    let m_2 = m * m;
+    return f_0 + (1.0 - f_0) * m_2 * m_2 * m;
+}
+
+// Twins of src/optics/microfacet.rs
+
+fn d_ggx(sin2_h: f32, alpha: f32) -> f32 {
+    let a_2 = alpha * alpha;
+    let cos2_h = 1.0 - sin2_h;
+    let d = cos2_h * a_2 + sin2_h;
+    return a_2 / (PI * d * d);
+}
+
+fn v_smith(mu_i: f32, mu_o: f32, alpha: f32) -> f32 {
+    let a_2 = alpha * alpha;
+    let l_i = mu_o * sqrt(a_2 + (1.0 - a_2) * mu_i * mu_i);
+    let l_o = mu_i * sqrt(a_2 + (1.0 - a_2) * mu_o * mu_o);
+    return 0.5 / (l_i + l_o);
+}
+
+// Twins of src/optics/table.rs
+
+struct Interface {
+    t: f32,
+    lost: f32,
+}
+
+struct InterfaceMean {
+    compensation: f32,
+    t_mean: f32,
+    capture: f32,
+}
+
+// Twins of src/optics/tier.rs
+
+struct Surface {
+    albedo: vec3<f32>,
+    alpha: f32,
+    eta: f32,
+    f_normal: f32,
+    specular: f32,
+}
+
+struct Facing {
+    mu_i: f32,
+    mu_o: f32,
+    cos_d: f32,
+    sin2_h: f32,
+}
+
+fn facing(n: vec3<f32>, l: vec3<f32>, v: vec3<f32>) -> Facing {
+    let sum = l + v;
+    let h = sum / max(length(sum), LENGTH_MIN);
+    let across = cross(n, h);
+    return Facing(
+        max(dot(n, l), MU_MIN),
+        max(dot(n, v), MU_MIN),
+        clamp(dot(l, h), 0.0, 1.0),
+        min(dot(across, across), 1.0),
+    );
+}
+
+fn brdf_lambert(s: Surface) -> vec3<f32> {
+    return s.albedo / PI;
+}
+
+fn brdf_draft(s: Surface, g: Facing) -> vec3<f32> {
+    let lobe = d_ggx(g.sin2_h, s.alpha)
+        * v_smith(g.mu_i, g.mu_o, s.alpha)
+        * fresnel_schlick(g.cos_d, s.f_normal);
+    return s.albedo / PI + vec3(s.specular * lobe);
+}
+
+fn brdf_gallery(
+    s: Surface,
+    g: Facing,
+    at_i: Interface,
+    at_o: Interface,
+    mean: InterfaceMean,
+) -> vec3<f32> {
+    let lobe = d_ggx(g.sin2_h, s.alpha)
+        * v_smith(g.mu_i, g.mu_o, s.alpha)
+        * fresnel_dielectric(g.cos_d, s.eta);
+    let diffuse = at_i.t * at_o.t * mean.capture / PI;
+    let compensated = mean.compensation * at_i.lost * at_o.lost;
+    return s.albedo * diffuse + vec3(s.specular * lobe + compensated);
+}
+
+// Twins of src/optics/lamp.rs. A lamp of any shape in one layout, narrowed on the CPU by
+// src/sheet/uniform.rs, so that lamps without area need no branch.
+
+struct Light {
+    // Towards a distant lamp, or the place of any other in mm.
+    place: vec3<f32>,
+    // 0 for a distant lamp, 1 for any other.
+    near: f32,
+    amount: vec3<f32>,
+    // Samples along each edge of a rectangle; 0 for lamps without area.
+    grid: u32,
+    axis: vec3<f32>,
+    // A spot's 1/(cos hotspot − cos fall-off).
+    beam_scale: f32,
+    half_edge_u: vec3<f32>,
+    cos_falloff: f32,
+    half_edge_v: vec3<f32>,
+    distance_squared_min: f32,
+}
+
+struct Incidence {
+    l: vec3<f32>,
+    e: vec3<f32>,
+}
+
+fn light_punctual(light: Light, p: vec3<f32>) -> Incidence {
+    let towards = light.place - light.near * p;
+    let distance_squared = dot(towards, towards);
+    let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
+    let beam = clamp((-dot(light.axis, l) - light.cos_falloff) * light.beam_scale, 0.0, 1.0);
+    return Incidence(l, light.amount * (beam / max(distance_squared, light.distance_squared_min)));
+}
+
+fn light_rectangle(light: Light, p: vec3<f32>, i: u32) -> Incidence {
+    let grid = f32(light.grid);
+    let u = (2.0 * f32(i % light.grid) + 1.0) / grid - 1.0;
+    let v = (2.0 * f32(i / light.grid) + 1.0) / grid - 1.0;
+    let towards = light.place + light.half_edge_u * u + light.half_edge_v * v - p;
+    let distance_squared = dot(towards, towards);
+    let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
+    let emits = max(-dot(light.axis, l), 0.0) / (grid * grid);
+    return Incidence(l, light.amount * (emits / max(distance_squared, light.distance_squared_min)));
+}

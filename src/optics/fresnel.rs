@@ -1,0 +1,70 @@
+//! Reflectance of a smooth interface.
+
+/// Unpolarised Fresnel reflectance of a dielectric, exact.
+///
+/// `cos_i` in [0, 1] is the cosine on the side the light comes from, `eta` > 0 the index behind
+/// the interface over the index in front of it. Total reflection gives 1.
+/// Source: Born & Wolf, Principles of Optics, §1.5.2.
+pub fn fresnel_dielectric(cos_i: f64, eta: f64) -> f64 {
+    let cos_i = cos_i.clamp(0.0, 1.0);
+    let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
+    if sin2_t >= 1.0 {
+        return 1.0;
+    }
+    let cos_t = (1.0 - sin2_t).sqrt();
+    let r_s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    let r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    0.5 * (r_s * r_s + r_p * r_p)
+}
+
+/// Schlick's approximation: `f_0` + (1 − `f_0`)(1 − `cos_i`)⁵ (Schlick 1994, eq. 15).
+pub fn fresnel_schlick(cos_i: f64, f_0: f64) -> f64 {
+    let m = (1.0 - cos_i).clamp(0.0, 1.0);
+    let m2 = m * m;
+    f_0 + (1.0 - f_0) * m2 * m2 * m
+}
+
+/// Reflectance at normal incidence of a dielectric of index ratio `eta`.
+pub fn normal_reflectance(eta: f64) -> f64 {
+    let r = (eta - 1.0) / (eta + 1.0);
+    r * r
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_forms_of_the_exact_reflectance() {
+        assert!((fresnel_dielectric(1.0, 1.5) - 0.04).abs() < 1e-15);
+        assert_eq!(fresnel_dielectric(0.0, 1.5), 1.0);
+        // Brewster's angle: only the s part is left, ((1 − n²)/(1 + n²))²/2.
+        let brewster = 1.5f64.atan().cos();
+        let s_only = 0.5 * ((1.0 - 2.25f64) / (1.0 + 2.25)).powi(2);
+        assert!((fresnel_dielectric(brewster, 1.5) - s_only).abs() < 1e-15);
+        // Beyond the critical angle, seen from inside.
+        assert_eq!(fresnel_dielectric(0.5, 1.0 / 1.5), 1.0);
+    }
+
+    #[test]
+    fn diffuse_reflectance_is_the_published_one() {
+        // r_e = 2∫Fμ dμ = .0918 for n = 1.5 (OPTICS.md, Interface).
+        let steps = 20_000;
+        let r_e: f64 = (0..steps)
+            .map(|i| {
+                let mu = (f64::from(i) + 0.5) / f64::from(steps);
+                2.0 * fresnel_dielectric(mu, 1.5) * mu / f64::from(steps)
+            })
+            .sum();
+        assert!((r_e - 0.0918).abs() < 5e-5, "{r_e}");
+    }
+
+    #[test]
+    fn schlick_meets_the_exact_form_at_both_ends_only() {
+        let f_0 = normal_reflectance(1.5);
+        assert_eq!(fresnel_schlick(1.0, f_0), f_0);
+        assert_eq!(fresnel_schlick(0.0, f_0), 1.0);
+        let at_60 = (fresnel_schlick(0.5, f_0) - fresnel_dielectric(0.5, 1.5)).abs();
+        assert!((0.005..0.05).contains(&at_60), "{at_60}");
+    }
+}

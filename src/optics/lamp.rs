@@ -1,0 +1,251 @@
+//! Light arriving at a point of the sheet, from lamps in photometric units.
+
+use glam::DVec3;
+
+/// Squared distances (mm²) are never taken smaller: 1e-4 m².
+pub const DISTANCE2_MIN_MM2: f64 = 100.0;
+
+/// A lamp as the shader sees it: pre-exposed, and placed in any one frame in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    pub shape: Shape,
+    /// Linear sRGB amount: illuminance facing a distant lamp, otherwise intensity times
+    /// 1e6 mm²/m² (for a rectangle, luminance times area), already divided by the reference
+    /// illuminance and times π, so that a perfect diffuser facing that illuminance shows 1.
+    pub amount: DVec3,
+}
+
+/// Where the light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// Unit vector towards the lamp.
+    Distant {
+        towards: DVec3,
+    },
+    Point {
+        position: DVec3,
+    },
+    /// `axis` is the unit vector along the beam; between the cosines the intensity is linear.
+    Spot {
+        position: DVec3,
+        axis: DVec3,
+        cos_hotspot: f64,
+        cos_falloff: f64,
+    },
+    /// `half_u`, `half_v` span half the rectangle; it shines along `axis` only. Sampled at
+    /// `grid` × `grid` midpoints.
+    Rectangle {
+        centre: DVec3,
+        axis: DVec3,
+        half_u: DVec3,
+        half_v: DVec3,
+        grid: u32,
+    },
+}
+
+/// Light at a point from one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Incidence {
+    /// Unit vector towards the light.
+    pub l: DVec3,
+    /// Illuminance on a surface facing `l`, in the unit of [`Light::amount`].
+    pub e: DVec3,
+}
+
+impl Light {
+    /// The light at `p` (mm), one [`Incidence`] for each sample of the lamp.
+    pub fn at(&self, p: DVec3) -> Vec<Incidence> {
+        match self.shape {
+            Shape::Distant { towards } => vec![Incidence {
+                l: towards,
+                e: self.amount,
+            }],
+            Shape::Point { position } => vec![self.inverse_square(position - p, |_| 1.0)],
+            Shape::Spot {
+                position,
+                axis,
+                cos_hotspot,
+                cos_falloff,
+            } => {
+                let width = (cos_hotspot - cos_falloff).max(1e-6);
+                let beam = |l: DVec3| ((-axis.dot(l) - cos_falloff) / width).clamp(0.0, 1.0);
+                vec![self.inverse_square(position - p, beam)]
+            }
+            Shape::Rectangle {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                grid,
+            } => {
+                let share = 1.0 / f64::from(grid * grid);
+                let midpoint = |i: u32| (2.0 * f64::from(i) + 1.0) / f64::from(grid) - 1.0;
+                (0..grid * grid)
+                    .map(|i| {
+                        let (u, v) = (midpoint(i % grid), midpoint(i / grid));
+                        let sample = centre + half_u * u + half_v * v;
+                        self.inverse_square(sample - p, |l| share * (-axis.dot(l)).max(0.0))
+                    })
+                    .collect()
+            }
+        }
+    }
+
+    /// Inverse square law from a point `towards` away, weighted by what it emits along −`l`.
+    fn inverse_square(&self, towards: DVec3, emits: impl Fn(DVec3) -> f64) -> Incidence {
+        let distance2 = towards.length_squared();
+        let l = towards / distance2.sqrt().max(1e-6);
+        Incidence {
+            l,
+            e: self.amount * (emits(l) / distance2.max(DISTANCE2_MIN_MM2)),
+        }
+    }
+
+    /// Illuminance on a surface at `p` with unit normal `n`, in the unit of `amount`.
+    pub fn illuminance(&self, p: DVec3, n: DVec3) -> DVec3 {
+        self.at(p)
+            .iter()
+            .map(|incidence| incidence.e * n.dot(incidence.l).max(0.0))
+            .sum()
+    }
+
+    /// The same lamp seen from a frame that is `rotate`d (world to frame) about the origin.
+    pub fn rotated(&self, rotate: glam::DQuat) -> Self {
+        let shape = match self.shape {
+            Shape::Distant { towards } => Shape::Distant {
+                towards: rotate * towards,
+            },
+            Shape::Point { position } => Shape::Point {
+                position: rotate * position,
+            },
+            Shape::Spot {
+                position,
+                axis,
+                cos_hotspot,
+                cos_falloff,
+            } => Shape::Spot {
+                position: rotate * position,
+                axis: rotate * axis,
+                cos_hotspot,
+                cos_falloff,
+            },
+            Shape::Rectangle {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                grid,
+            } => Shape::Rectangle {
+                centre: rotate * centre,
+                axis: rotate * axis,
+                half_u: rotate * half_u,
+                half_v: rotate * half_v,
+                grid,
+            },
+        };
+        Self {
+            shape,
+            amount: self.amount,
+        }
+    }
+}
+
+/// Illuminance per unit luminance that a Lambertian polygon gives to a point at the origin with
+/// unit normal `n`; the polygon must lie wholly above the plane (Lambert 1760; Arvo 1994).
+pub fn polygon_form(corners: &[DVec3], n: DVec3) -> f64 {
+    let unit: Vec<DVec3> = corners.iter().map(|c| c.normalize_or_zero()).collect();
+    let sum: f64 = (0..unit.len())
+        .map(|i| {
+            let (a, b) = (unit[i], unit[(i + 1) % unit.len()]);
+            let cross = a.cross(b);
+            cross.length().atan2(a.dot(b)) * cross.normalize_or_zero().dot(n)
+        })
+        .sum();
+    (0.5 * sum).abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn light(shape: Shape) -> Light {
+        Light {
+            shape,
+            amount: DVec3::ONE,
+        }
+    }
+
+    #[test]
+    fn point_and_spot_follow_inverse_square_and_cosine() {
+        for degrees in [0.0f64, 45.0, 80.0, 89.0] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let position = DVec3::new(sin, 0.0, cos) * 500.0;
+            let expected = cos / 250_000.0;
+            let point = light(Shape::Point { position }).illuminance(DVec3::ZERO, DVec3::Z);
+            assert!((point.x / expected - 1.0).abs() < 1e-12);
+            let spot = Shape::Spot {
+                position,
+                axis: -position.normalize(),
+                cos_hotspot: 0.9,
+                cos_falloff: 0.8,
+            };
+            let spot = light(spot).illuminance(DVec3::ZERO, DVec3::Z);
+            assert!((spot.x / expected - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn spot_is_half_bright_half_way_in_the_cosine() {
+        let axis = DVec3::new(-(1.0f64 - 0.85 * 0.85).sqrt(), 0.0, -0.85);
+        let spot = |cos_hotspot, cos_falloff| {
+            light(Shape::Spot {
+                position: DVec3::Z * 100.0,
+                axis,
+                cos_hotspot,
+                cos_falloff,
+            })
+            .illuminance(DVec3::ZERO, DVec3::Z)
+            .x
+        };
+        assert!((spot(0.9, 0.8) * 1e4 - 0.5).abs() < 1e-12);
+        assert_eq!(spot(0.95, 0.9), 0.0);
+        // No width between hotspot and fall-off must not divide by zero.
+        assert!(spot(0.85, 0.85).is_finite());
+    }
+
+    #[test]
+    fn rectangle_meets_the_polygon_formula() {
+        let (half_u, half_v) = (DVec3::X * 100.0, DVec3::Y * 20.0);
+        for centre in [DVec3::new(0.0, 0.0, 400.0), DVec3::new(300.0, 100.0, 200.0)] {
+            let shape = Shape::Rectangle {
+                centre,
+                axis: -DVec3::Z,
+                half_u,
+                half_v,
+                grid: 16,
+            };
+            let area = 200.0 * 40.0;
+            let sampled = light(shape).illuminance(DVec3::ZERO, DVec3::Z).x * area;
+            let corners = [
+                centre - half_u - half_v,
+                centre + half_u - half_v,
+                centre + half_u + half_v,
+                centre - half_u + half_v,
+            ];
+            let exact = polygon_form(&corners, DVec3::Z);
+            assert!((sampled / exact - 1.0).abs() < 1e-3, "{sampled} {exact}");
+        }
+    }
+
+    #[test]
+    fn lamps_behind_and_in_the_plane_give_nothing_and_the_nearest_stays_finite() {
+        for position in [DVec3::X * 100.0, DVec3::new(0.0, 0.0, -50.0), DVec3::ZERO] {
+            let e = light(Shape::Point { position }).illuminance(DVec3::ZERO, DVec3::Z);
+            assert_eq!(e, DVec3::ZERO, "{position}");
+        }
+        let near = light(Shape::Point {
+            position: DVec3::Z * 1e-9,
+        });
+        assert!(near.illuminance(DVec3::ZERO, DVec3::Z).is_finite());
+    }
+}
