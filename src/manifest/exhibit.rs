@@ -1,0 +1,411 @@
+//! The validated exhibit: what a curator wrote, with every unit, range, file and reference
+//! checked once. Nothing behind this module checks any of it again.
+//!
+//! # Frames
+//! *Side frame*: millimetres on one side of the sheet as somebody sees who looks at that side:
+//! origin at the top left corner, x right, y **down**. *Table frame*: millimetres around the
+//! centre of the sheet at rest: x right, y **up**, z towards the viewer; lamps live here and
+//! stay where they are when the sheet is turned over.
+
+use std::{collections::BTreeMap, path::PathBuf};
+
+use glam::{DAffine2, DVec2, DVec3};
+use serde::Serialize;
+
+use crate::{
+    maps::{ColourEncoding, ColourMapName, NormalY},
+    optics::medium::MediumId,
+    units::{Candela, Degrees, Kelvin, Lux, Micrometres, Millimetres, Nits},
+};
+
+/// A folder with an `exhibit.toml`, validated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exhibit {
+    /// The folder that every path of the manifest is relative to.
+    pub folder: PathBuf,
+    /// The manifest's own path, as faults name it.
+    pub manifest: PathBuf,
+    pub title: Wording,
+    /// BCP 47 tags in order of preference; the first is the fallback of every [`Wording`].
+    pub languages: Vec<String>,
+    /// Never empty.
+    pub drawings: Vec<Drawing>,
+    pub lamps: Vec<Lamp>,
+    /// Never empty: a manifest without scenes gets one of each drawing's recto.
+    pub scenes: Vec<Scene>,
+    pub tours: Vec<Tour>,
+    pub accuracy: Accuracy,
+    /// What the manifest asks for that this version of Recto validates but does not show yet,
+    /// each as a sentence for `recto check`.
+    pub not_shown_yet: Vec<String>,
+}
+
+/// A text in one or more languages, by BCP 47 tag.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wording(pub BTreeMap<String, String>);
+
+/// Where a map or constant comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    Measured,
+    Fitted,
+    Assumed,
+}
+
+/// One sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    pub id: String,
+    pub title: Wording,
+    pub caption: Wording,
+    pub credit: String,
+    pub date: String,
+    pub inventory: String,
+    /// Width and height in mm, both > 0.
+    pub size_mm: DVec2,
+    pub paper: Paper,
+    /// Where the sheet is (white) and where it is not (black), in the recto's side frame.
+    pub outline: Option<MapFile>,
+    pub surface: Surface,
+    pub recto: Side,
+    /// `None`: the verso is bare paper.
+    pub verso: Option<Side>,
+    /// The axis about which the sheet is turned over, from `verso.register.flip`.
+    pub flip: FlipAxis,
+    pub transmission: Option<MapFile>,
+    pub states: Vec<State>,
+    pub overlays: Vec<Overlay>,
+    pub hotspots: Vec<Hotspot>,
+}
+
+/// What the sheet is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Paper {
+    pub kind: MediumId,
+    pub thickness: Micrometres,
+    /// Distance between chain lines, for laid paper.
+    pub chain_lines: Option<Millimetres>,
+    /// GGX roughness α of the bare surface where no roughness map says otherwise, in (0, 1].
+    pub roughness: f64,
+    /// Refractive index of the surface, in [1, 3].
+    pub index: f64,
+    /// Strength of the specular lobe, 0 (off) to 1 (physical).
+    pub specular: f64,
+    pub source: Source,
+}
+
+/// The macroscopic shape of the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Surface {
+    Flat,
+    /// A height map in the recto's side frame, heights towards the recto's viewer.
+    Height(HeightMap),
+    /// A glTF file whose first mesh is the sheet, in mm in the table frame, with texture
+    /// coordinates over the recto's side frame (0…1, v down).
+    Gltf(PathBuf),
+}
+
+/// The axis about which a sheet is turned over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum FlipAxis {
+    /// Turned about the sheet's vertical axis, as a page is (`flip = "horizontal"`).
+    #[serde(rename = "horizontal")]
+    Vertical,
+    /// Turned about the sheet's horizontal axis (`flip = "vertical"`).
+    #[serde(rename = "vertical")]
+    Horizontal,
+}
+
+/// The maps of one side. All maps that a side itself declares have one size in pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    pub albedo: ColourMap,
+    pub normal: Option<NormalMap>,
+    pub height: Option<HeightMap>,
+    pub roughness: Option<RoughnessMap>,
+    /// From the lowest to the uppermost.
+    pub media: Vec<MediaMap>,
+}
+
+/// Which side of a sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SideName {
+    #[default]
+    Recto,
+    Verso,
+}
+
+/// An image file that was found, opened and measured (header only).
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapFile {
+    pub path: PathBuf,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Side frame (mm) → texture coordinates (0…1, v down) of this picture.
+    pub uv_from_side: DAffine2,
+    pub source: Source,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColourMap {
+    pub file: MapFile,
+    pub encoding: ColourEncoding,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct NormalMap {
+    pub file: MapFile,
+    pub y: NormalY,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightMap {
+    pub file: MapFile,
+    /// Heights of black and white in µm.
+    pub range_um: [f64; 2],
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoughnessMap {
+    pub file: MapFile,
+    /// True where white is smooth.
+    pub gloss: bool,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct MediaMap {
+    pub file: MapFile,
+    pub content: MediaContent,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum MediaContent {
+    /// 8-bit sRGB colours in the file, each a medium; any other colour is bare paper.
+    Legend(Vec<([u8; 3], MediumId)>),
+    /// One medium for each channel of the file in its order; values are coverage.
+    Weights(Vec<MediumId>),
+}
+
+/// A dated state of conservation: maps that replace those of the sides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    pub id: String,
+    pub title: Wording,
+    pub date: String,
+    pub recto: SidePatch,
+    pub verso: SidePatch,
+}
+
+/// What a state replaces on one side.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SidePatch {
+    pub albedo: Option<ColourMap>,
+    pub normal: Option<NormalMap>,
+    pub height: Option<HeightMap>,
+    pub roughness: Option<RoughnessMap>,
+    pub media: Option<Vec<MediaMap>>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlay {
+    pub id: String,
+    pub title: Wording,
+    pub side: SideName,
+    pub file: MapFile,
+    pub kind: OverlayKind,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum OverlayKind {
+    Categorical(Vec<LegendEntry>),
+    /// Grey values of the file span `range` of the quantity, shown by `colour_map`.
+    Continuous {
+        colour_map: ColourMapName,
+        unit: String,
+        range: [f64; 2],
+    },
+    Picture(ColourEncoding),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct LegendEntry {
+    /// 8-bit sRGB, both in the file and on screen.
+    pub colour: [u8; 3],
+    pub label: Wording,
+}
+
+/// A place on a side that leads to a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hotspot {
+    pub side: SideName,
+    /// In the side frame.
+    pub at_mm: DVec2,
+    pub label: Wording,
+    /// Index into [`Exhibit::scenes`].
+    pub scene: usize,
+}
+
+/// A light source in photometric units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lamp {
+    pub id: String,
+    pub title: Wording,
+    pub kelvin: Kelvin,
+    pub kind: LampKind,
+}
+
+/// Places are in the table frame; every lamp that has a direction looks at the sheet's centre
+/// unless it says otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LampKind {
+    /// `illuminance` is measured facing the lamp, so the sheet receives it times cos θ.
+    Distant {
+        illuminance: Lux,
+        elevation: Degrees,
+        azimuth: Degrees,
+    },
+    Point {
+        intensity: Candela,
+        position_mm: DVec3,
+    },
+    /// Full intensity within `hotspot` of the axis, none beyond `falloff`, linear in the
+    /// cosine between (both half angles).
+    Spot {
+        intensity: Candela,
+        position_mm: DVec3,
+        aim_mm: DVec3,
+        hotspot: Degrees,
+        falloff: Degrees,
+    },
+    /// One-sided Lambertian rectangle; its width is horizontal.
+    Rectangle {
+        luminance: Nits,
+        position_mm: DVec3,
+        aim_mm: DVec3,
+        size_mm: DVec2,
+    },
+    /// One-sided Lambertian disc. Not shown yet.
+    Disc {
+        luminance: Nits,
+        position_mm: DVec3,
+        aim_mm: DVec3,
+        diameter_mm: f64,
+    },
+    /// A photometric file. Not shown yet.
+    Ies {
+        path: PathBuf,
+        position_mm: DVec3,
+        aim_mm: DVec3,
+    },
+    /// A luminous table behind the sheet. Not shown yet.
+    LightTable { luminance: Nits },
+}
+
+/// Everything that decides a picture: the one saved state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    pub id: String,
+    pub title: Wording,
+    pub text: Wording,
+    /// Index into [`Exhibit::drawings`].
+    pub drawing: usize,
+    pub side: SideName,
+    /// Index into the drawing's states; `None` is the sheet as its sides describe it.
+    pub state: Option<usize>,
+    /// Overlays from the lowest to the uppermost: index into the drawing's overlays, opacity
+    /// 0…1. Only overlays of the scene's side.
+    pub overlays: Vec<(usize, f64)>,
+    pub compare: Option<Comparison>,
+    pub camera: Camera,
+    /// Indices into [`Exhibit::lamps`], at most [`MAX_LAMPS`].
+    pub lamps: Vec<usize>,
+    pub ambient: Ambient,
+    pub exposure: Exposure,
+    /// The language of the captions; `None` is the exhibit's first.
+    pub language: Option<String>,
+}
+
+/// How many lamps light one scene at most.
+pub const MAX_LAMPS: usize = 8;
+/// How many overlays lie on one scene at once at most.
+pub const MAX_OVERLAYS: usize = 16;
+
+/// Members shown against each other. Validated, not shown yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    pub mode: CompareMode,
+    pub of: Vec<Member>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompareMode {
+    Curtain,
+    SideBySide,
+    Blend,
+    Loupe,
+    Difference,
+    Flicker,
+}
+
+/// One member of a comparison, written `state:before`, `side:verso`, `overlay:damage`,
+/// `drawing:landscape`. Indices into the scene's drawing, or the exhibit for `Drawing`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Member {
+    State(usize),
+    Side(SideName),
+    Overlay(usize),
+    Drawing(usize),
+}
+
+/// The eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// What it looks at, in the side frame of the scene's side.
+    pub centre_mm: DVec2,
+    /// Width of the sheet's plane that fills the picture, at the centre, in mm, > 0.
+    pub width_mm: f64,
+    /// How far the eye leans from straight above towards the bottom edge, 0…89°.
+    pub tilt: Degrees,
+    /// How far the eye walks around the sheet, anticlockwise as seen from above.
+    pub turn: Degrees,
+    /// Distance of the eye; `None` is a parallel projection.
+    pub distance_mm: Option<f64>,
+}
+
+/// Even light from every direction of the room.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ambient {
+    /// Illuminance that it alone gives to the sheet.
+    pub illuminance: Lux,
+    pub kelvin: Kelvin,
+}
+
+/// What a display shows at full level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exposure {
+    /// The illuminance at which a perfect diffuser is shown at `level`; `None` is what the
+    /// scene's own lamps give to the centre of the flat sheet.
+    pub illuminance: Option<Lux>,
+    /// Linear display level of that diffuser, in (0, 1].
+    pub level: f64,
+    /// The colour temperature that is shown as neutral.
+    pub white: Kelvin,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tour {
+    pub id: String,
+    pub title: Wording,
+    /// Index into [`Exhibit::scenes`] and seconds (> 0).
+    pub stops: Vec<(usize, f64)>,
+}
+
+/// What the curator asks of the rendering.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    pub max_delta_e: f64,
+    pub frame_ms: f64,
+}

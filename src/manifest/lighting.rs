@@ -1,0 +1,158 @@
+//! A scene's lamps as light: colour, exposure and shape, ready for any renderer.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+
+use super::exhibit::{Exhibit, LampKind, Scene};
+use crate::{
+    colour,
+    optics::lamp::{Light, Shape},
+    units::{Degrees, Kelvin},
+};
+
+/// Square millimetres in a square metre: intensities in candela meet distances in mm.
+const MM2_PER_M2: f64 = 1e6;
+/// A lamp that lights the sheet by less than this is taken for darkness, in lx.
+const DARK_LUX: f64 = 1e-9;
+
+/// The light of a scene in the table frame, pre-exposed: a perfect diffuser facing the
+/// reference illuminance shows 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lighting {
+    pub lights: Vec<Light>,
+    /// Illuminance of the room's even light, in the unit of [`Light::amount`].
+    pub ambient: DVec3,
+    /// The reference illuminance, declared or found, in lx.
+    pub reference_lux: f64,
+}
+
+impl Exhibit {
+    /// The light of `scene`.
+    pub fn lighting(&self, scene: &Scene) -> Lighting {
+        let white = scene.exposure.white;
+        // First in photometric units; the exposure follows.
+        let mut lights: Vec<Light> = scene
+            .lamps
+            .iter()
+            .filter_map(|&lamp| {
+                let lamp = &self.lamps[lamp];
+                let (shape, amount) = shape(&lamp.kind)?;
+                Some(Light {
+                    shape,
+                    amount: tint(lamp.kelvin, white) * amount,
+                })
+            })
+            .collect();
+        let ambient_lux = scene.ambient.illuminance.0;
+        let reference_lux = scene.exposure.illuminance.map_or_else(
+            || {
+                let lit: DVec3 = lights
+                    .iter()
+                    .map(|light| light.illuminance(DVec3::ZERO, DVec3::Z))
+                    .sum();
+                let lux = colour::luminance(lit.to_array()) + ambient_lux;
+                if lux > DARK_LUX { lux } else { 1.0 }
+            },
+            |lux| lux.0,
+        );
+        let exposure = PI / reference_lux;
+        for light in &mut lights {
+            light.amount *= exposure;
+        }
+        let ambient = tint(scene.ambient.kelvin, white) * (ambient_lux * exposure);
+        Lighting {
+            lights,
+            ambient,
+            reference_lux,
+        }
+    }
+}
+
+/// Linear sRGB of unit luminance for a lamp seen by an eye adapted to `white`.
+fn tint(lamp: Kelvin, white: Kelvin) -> DVec3 {
+    DVec3::from_array(colour::lamp_rgb(lamp.0, white.0))
+}
+
+/// Unit vector in the table frame: azimuth 0° is right and 90° the top edge.
+pub fn direction(elevation: Degrees, azimuth: Degrees) -> DVec3 {
+    let (sin_e, cos_e) = elevation.radians().sin_cos();
+    let (sin_a, cos_a) = azimuth.radians().sin_cos();
+    DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e)
+}
+
+/// Shape and unexposed amount; `None` for lamps that this version does not show.
+fn shape(kind: &LampKind) -> Option<(Shape, f64)> {
+    Some(match *kind {
+        LampKind::Distant {
+            illuminance,
+            elevation,
+            azimuth,
+        } => (
+            Shape::Distant {
+                towards: direction(elevation, azimuth),
+            },
+            illuminance.0,
+        ),
+        LampKind::Point {
+            intensity,
+            position_mm,
+        } => (
+            Shape::Point {
+                position: position_mm,
+            },
+            intensity.0 * MM2_PER_M2,
+        ),
+        LampKind::Spot {
+            intensity,
+            position_mm,
+            aim_mm,
+            hotspot,
+            falloff,
+        } => {
+            let shape = Shape::Spot {
+                position: position_mm,
+                axis: (aim_mm - position_mm).normalize_or(-DVec3::Z),
+                cos_hotspot: hotspot.radians().cos(),
+                cos_falloff: falloff.radians().cos(),
+            };
+            (shape, intensity.0 * MM2_PER_M2)
+        }
+        LampKind::Rectangle {
+            luminance,
+            position_mm,
+            aim_mm,
+            size_mm,
+        } => {
+            // L·A with A in m² is a candela; mm² for m² cancels MM2_PER_M2.
+            let amount = luminance.0 * size_mm.x * size_mm.y;
+            (rectangle(position_mm, aim_mm, size_mm), amount)
+        }
+        LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => return None,
+    })
+}
+
+/// A rectangle at `centre` that faces `aim`, its width horizontal, sampled finely enough for
+/// how large it looks from there.
+fn rectangle(centre: DVec3, aim: DVec3, size_mm: DVec2) -> Shape {
+    let axis = (aim - centre).normalize_or(-DVec3::Z);
+    // Straight above, "horizontal" is the sheet's own x.
+    let across = DVec3::Z.cross(axis);
+    let u = if across.length() > 1e-6 {
+        across.normalize()
+    } else {
+        DVec3::X
+    };
+    let v = axis.cross(u);
+    let apparent = size_mm.max_element() / (aim - centre).length().max(1e-6);
+    // Midpoint sampling errs with the square of a cell's apparent size.
+    let grid = ((apparent * 8.0).ceil() as u32).clamp(2, 8);
+    let (half_u, half_v) = (u * (size_mm.x / 2.0), v * (size_mm.y / 2.0));
+    Shape::Rectangle {
+        centre,
+        axis,
+        half_u,
+        half_v,
+        grid,
+    }
+}

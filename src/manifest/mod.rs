@@ -1,0 +1,103 @@
+//! The exhibit manifest: what a curator wrote, read, checked once, and told back in plain words
+//! where it is wrong.
+//!
+//! | step | where |
+//! |---|---|
+//! | text → tree with the place of every key | `document` |
+//! | tree → plain data, every key declared once | `decode`, [`raw`] |
+//! | the same declarations → JSON Schema | [`schema()`] |
+//! | plain data → [`Exhibit`], with files, references and units | `validate` |
+//! | what is wrong, where, and what to do | [`Fault`], [`Faults`] |
+//! | a starting manifest from one picture | [`create`] |
+
+mod create;
+mod decode;
+mod document;
+pub mod exhibit;
+pub mod eye;
+mod fault;
+pub mod frames;
+pub mod lighting;
+mod macros;
+mod query;
+pub mod raw;
+mod schema;
+mod validate;
+
+use std::path::Path;
+
+pub use create::{CreateError, create};
+pub use decode::{Brief, Dictionary, List, OfKind, OneOrMany, Pattern};
+pub use document::MANIFEST;
+pub use exhibit::*;
+pub use fault::{Fault, Faults, Place, Severity, did_you_mean, nearest, quote, quoted_list};
+pub use schema::schema;
+
+use decode::{Decode, Node, Report};
+use document::{Document, Words};
+use raw::RawManifest;
+
+impl Exhibit {
+    /// Reads the exhibit of a folder, or of a manifest by any name, and checks everything but
+    /// the pixels of its pictures, of which only the headers are looked at
+    /// (see [`Exhibit::verify`]). Returns it with its warnings.
+    ///
+    /// # Errors
+    /// All faults, warnings included, in the order of their places.
+    pub fn read(path: &Path) -> Result<(Self, Vec<Fault>), Faults> {
+        let manifest = document::manifest_path(path);
+        let text = document::read_text(&manifest)?;
+        let folder = manifest.parent().unwrap_or(Path::new(""));
+        // The folder of a bare file name is the current one.
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        };
+        Self::parse(&manifest, folder, &text)
+    }
+
+    fn parse(manifest: &Path, folder: &Path, text: &str) -> Result<(Self, Vec<Fault>), Faults> {
+        let document = Document::parse(manifest, text)?;
+        let mut report = Report::new(&document);
+        let raw = RawManifest::decode(&Node::root(&document), &mut report);
+        let exhibit = raw.and_then(|raw| validate::exhibit(&raw, manifest, folder, &mut report));
+        let mut faults = report.into_faults();
+        fault::sort(&mut faults);
+        match exhibit {
+            Some(exhibit)
+                if faults
+                    .iter()
+                    .all(|fault| fault.severity == Severity::Warning) =>
+            {
+                Ok((exhibit, faults))
+            }
+            _ => Err(Faults::new(faults).unwrap_or_else(|| unexplained(manifest).into())),
+        }
+    }
+}
+
+/// Stands in for a fault that validation should have reported.
+fn unexplained(manifest: &Path) -> Fault {
+    let words = Words::new(
+        "an exhibit that cannot be used, for a reason that was not recorded",
+        "",
+        "please report this with the manifest",
+    );
+    words.of_file(manifest)
+}
+
+/// Checks keys, types, ranges and words of a manifest's text, which is what [`schema()`]
+/// describes, and touches no file.
+///
+/// # Errors
+/// All faults of syntax, or else of shape.
+pub fn check_shape(text: &str) -> Result<(), Faults> {
+    let document = Document::parse(Path::new(MANIFEST), text)?;
+    let mut report = Report::new(&document);
+    RawManifest::decode(&Node::root(&document), &mut report);
+    match Faults::new(report.into_faults()) {
+        Some(faults) => Err(faults),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,336 @@
+//! What others ask of an exhibit.
+
+use std::path::Path;
+
+use glam::DVec2;
+
+use super::{
+    decode::Pattern,
+    document::{self, Document},
+    exhibit::{
+        Camera, Drawing, Exhibit, HeightMap, MapFile, OverlayKind, Scene, Side, SideName,
+        SidePatch, State, Surface, Wording,
+    },
+    fault::{Fault, Faults, Severity},
+    raw::values::FilePath,
+    validate::{PICTURE, map_words},
+};
+use crate::{
+    maps::{self, ColourEncoding},
+    units::Degrees,
+};
+
+/// How much wider than the sheet the view of the whole sheet is.
+const MARGIN: f64 = 1.08;
+
+impl Exhibit {
+    /// The index and the scene with this id.
+    pub fn scene(&self, id: &str) -> Option<(usize, &Scene)> {
+        self.scenes
+            .iter()
+            .enumerate()
+            .find(|(_, scene)| scene.id == id)
+    }
+
+    /// The index and the drawing with this id.
+    pub fn drawing(&self, id: &str) -> Option<(usize, &Drawing)> {
+        self.drawings
+            .iter()
+            .enumerate()
+            .find(|(_, drawing)| drawing.id == id)
+    }
+
+    /// The drawing of a scene of this exhibit.
+    pub fn drawing_of(&self, scene: &Scene) -> &Drawing {
+        &self.drawings[scene.drawing]
+    }
+
+    /// A text in `language`, or as near to it as there is one: the same language of another
+    /// region, then the exhibit's languages in their order, then any.
+    pub fn text<'w>(&self, wording: &'w Wording, language: &str) -> Option<&'w str> {
+        wording.in_language(language, &self.languages)
+    }
+
+    /// Every picture of the exhibit.
+    pub fn maps(&self) -> impl Iterator<Item = &MapFile> {
+        self.drawings.iter().flat_map(Drawing::maps)
+    }
+
+    /// Decodes whole pictures, which finds truncated and damaged ones. Reading an exhibit looks
+    /// at their headers only.
+    ///
+    /// # Errors
+    /// All faults, each at the place in the manifest that names the picture.
+    pub fn verify<'m>(&self, maps: impl IntoIterator<Item = &'m MapFile>) -> Result<(), Faults> {
+        let mut paths: Vec<&Path> = maps.into_iter().map(|map| map.path.as_path()).collect();
+        paths.sort();
+        paths.dedup();
+        let faults = paths.into_iter().filter_map(|path| {
+            let error = self.verify_file(path).err()?;
+            Some(self.map_fault(path, &error))
+        });
+        match Faults::new(faults.collect()) {
+            Some(faults) => Err(faults),
+            None => Ok(()),
+        }
+    }
+
+    fn verify_file(&self, path: &Path) -> Result<(), maps::MapError> {
+        let mut encodings = self
+            .drawings
+            .iter()
+            .flat_map(Drawing::colour_maps)
+            .filter(|(file, _)| file.path == path)
+            .map(|(_, encoding)| encoding)
+            .peekable();
+        if encodings.peek().is_none() {
+            return maps::verify(path).map(|_| ());
+        }
+        encodings.try_for_each(|encoding| maps::verify_colour(path, encoding).map(|_| ()))
+    }
+
+    /// The fault for a picture of the exhibit that could not be loaded, at the place in the
+    /// manifest that first names it.
+    pub fn map_fault(&self, path: &Path, error: &maps::MapError) -> Fault {
+        let name = path
+            .strip_prefix(&self.folder)
+            .unwrap_or(path)
+            .to_string_lossy();
+        let words = map_words(&name, error, PICTURE);
+        let named = document::read_text(&self.manifest).ok().and_then(|text| {
+            let document = Document::parse(&self.manifest, &text).ok()?;
+            let same = |text: &str| {
+                FilePath::from_text(text)
+                    .is_some_and(|file| self.folder.join(file.as_str()) == path)
+            };
+            let trail = document.find_text(same)?;
+            Some(document.fault(&trail, document::At::Value, Severity::Error, words.clone()))
+        });
+        // The manifest may have changed since it was read.
+        named.unwrap_or_else(|| words.of_file(&self.manifest))
+    }
+}
+
+impl Drawing {
+    /// The index and the state with this id.
+    pub fn state(&self, id: &str) -> Option<(usize, &State)> {
+        self.states
+            .iter()
+            .enumerate()
+            .find(|(_, state)| state.id == id)
+    }
+
+    /// The index and the overlay with this id.
+    pub fn overlay(&self, id: &str) -> Option<(usize, &super::exhibit::Overlay)> {
+        self.overlays
+            .iter()
+            .enumerate()
+            .find(|(_, overlay)| overlay.id == id)
+    }
+
+    /// A side with what the state, by its index, replaces on it; `None` is bare paper.
+    pub fn side_in_state(&self, side: SideName, state: Option<usize>) -> Option<Side> {
+        let own = match side {
+            SideName::Recto => Some(&self.recto),
+            SideName::Verso => self.verso.as_ref(),
+        };
+        let patch = state
+            .and_then(|index| self.states.get(index))
+            .map(|state| match side {
+                SideName::Recto => &state.recto,
+                SideName::Verso => &state.verso,
+            });
+        match (own, patch) {
+            (Some(own), Some(patch)) => Some(own.clone().replaced(patch)),
+            (Some(own), None) => Some(own.clone()),
+            (None, Some(patch)) => Some(Side {
+                albedo: patch.albedo.clone()?,
+                normal: patch.normal.clone(),
+                height: patch.height.clone(),
+                roughness: patch.roughness.clone(),
+                media: patch.media.clone().unwrap_or_default(),
+            }),
+            (None, None) => None,
+        }
+    }
+
+    /// Every picture of the drawing.
+    pub fn maps(&self) -> impl Iterator<Item = &MapFile> {
+        let surface = match &self.surface {
+            Surface::Height(HeightMap { file, .. }) => Some(file),
+            Surface::Flat | Surface::Gltf(_) => None,
+        };
+        let sides = [Some(&self.recto), self.verso.as_ref()]
+            .into_iter()
+            .flatten();
+        let patches = self
+            .states
+            .iter()
+            .flat_map(|state| [&state.recto, &state.verso]);
+        self.outline
+            .iter()
+            .chain(surface)
+            .chain(sides.flat_map(Side::maps))
+            .chain(&self.transmission)
+            .chain(patches.flat_map(SidePatch::maps))
+            .chain(self.overlays.iter().map(|overlay| &overlay.file))
+    }
+}
+
+impl Drawing {
+    /// The pictures whose colours are meant as such, and how they are encoded.
+    fn colour_maps(&self) -> impl Iterator<Item = (&MapFile, ColourEncoding)> {
+        let sides = [Some(&self.recto), self.verso.as_ref()]
+            .into_iter()
+            .flatten();
+        let patches = self
+            .states
+            .iter()
+            .flat_map(|state| [&state.recto, &state.verso]);
+        let pictures = self
+            .overlays
+            .iter()
+            .filter_map(|overlay| match overlay.kind {
+                OverlayKind::Picture(encoding) => Some((&overlay.file, encoding)),
+                OverlayKind::Categorical(_) | OverlayKind::Continuous { .. } => None,
+            });
+        sides
+            .map(|side| &side.albedo)
+            .chain(patches.filter_map(|patch| patch.albedo.as_ref()))
+            .map(|map| (&map.file, map.encoding))
+            .chain(pictures)
+    }
+}
+
+impl Side {
+    /// Every picture of the side.
+    pub fn maps(&self) -> impl Iterator<Item = &MapFile> {
+        std::iter::once(&self.albedo.file)
+            .chain(self.normal.iter().map(|map| &map.file))
+            .chain(self.height.iter().map(|map| &map.file))
+            .chain(self.roughness.iter().map(|map| &map.file))
+            .chain(self.media.iter().map(|map| &map.file))
+    }
+
+    fn replaced(self, patch: &SidePatch) -> Self {
+        let patch = patch.clone();
+        Self {
+            albedo: patch.albedo.unwrap_or(self.albedo),
+            normal: patch.normal.or(self.normal),
+            height: patch.height.or(self.height),
+            roughness: patch.roughness.or(self.roughness),
+            media: patch.media.unwrap_or(self.media),
+        }
+    }
+}
+
+impl SidePatch {
+    /// Every picture that it replaces one by.
+    pub fn maps(&self) -> impl Iterator<Item = &MapFile> {
+        self.albedo
+            .iter()
+            .map(|map| &map.file)
+            .chain(self.normal.iter().map(|map| &map.file))
+            .chain(self.height.iter().map(|map| &map.file))
+            .chain(self.roughness.iter().map(|map| &map.file))
+            .chain(self.media.iter().flatten().map(|map| &map.file))
+    }
+}
+
+impl Wording {
+    /// The text in `language` (a BCP 47 tag), or as near to it as there is one: without its last
+    /// subtags, in another region, then in each of `fallbacks`, then in any language. `None` if
+    /// there is no text at all.
+    pub fn in_language(&self, language: &str, fallbacks: &[String]) -> Option<&str> {
+        std::iter::once(language)
+            .chain(fallbacks.iter().map(String::as_str))
+            .find_map(|language| self.near(language))
+            .or_else(|| self.0.values().next().map(String::as_str))
+    }
+
+    fn near(&self, language: &str) -> Option<&str> {
+        let mut tag = language;
+        loop {
+            let exact = self.0.iter().find(|(own, _)| own.eq_ignore_ascii_case(tag));
+            if let Some((_, text)) = exact {
+                return Some(text);
+            }
+            match tag.rfind('-') {
+                Some(hyphen) => tag = &tag[..hyphen],
+                None => break,
+            }
+        }
+        let primary = |tag: &str| {
+            tag.split('-')
+                .next()
+                .unwrap_or_default()
+                .to_ascii_lowercase()
+        };
+        let relative = self.0.iter().find(|(own, _)| primary(own) == primary(tag));
+        relative.map(|(_, text)| text.as_str())
+    }
+}
+
+impl Camera {
+    /// From straight above onto the whole sheet of `size_mm`, somewhat wider than it.
+    pub fn whole_sheet(size_mm: DVec2) -> Self {
+        Self {
+            centre_mm: size_mm / 2.0,
+            width_mm: size_mm.x * MARGIN,
+            tilt: Degrees(0.0),
+            turn: Degrees(0.0),
+            distance_mm: None,
+        }
+    }
+
+    /// The same camera for a picture of `aspect` (width by height), where one that shows the
+    /// whole sheet goes on showing the whole of it; others keep their width.
+    pub fn fitted(self, size_mm: DVec2, aspect: f64) -> Self {
+        if self != Self::whole_sheet(size_mm) {
+            return self;
+        }
+        Self {
+            width_mm: self.width_mm.max(size_mm.y * MARGIN * aspect),
+            ..self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wording(texts: &[(&str, &str)]) -> Wording {
+        Wording(
+            texts
+                .iter()
+                .map(|(tag, text)| ((*tag).into(), (*text).into()))
+                .collect(),
+        )
+    }
+
+    #[test]
+    fn a_text_is_found_in_the_nearest_language() {
+        let wording = wording(&[("it", "foglio"), ("pt-BR", "folha"), ("en", "sheet")]);
+        let fallbacks = ["en".to_owned()];
+        assert_eq!(wording.in_language("it-CH", &fallbacks), Some("foglio"));
+        assert_eq!(wording.in_language("pt-PT", &fallbacks), Some("folha"));
+        assert_eq!(wording.in_language("IT", &fallbacks), Some("foglio"));
+        assert_eq!(wording.in_language("ja", &fallbacks), Some("sheet"));
+        assert_eq!(wording.in_language("ja", &[]), Some("sheet"));
+        assert_eq!(Wording::default().in_language("en", &fallbacks), None);
+    }
+
+    #[test]
+    fn the_whole_of_a_tall_sheet_is_seen_in_a_wide_picture() {
+        let size = DVec2::new(200.0, 300.0);
+        let whole = Camera::whole_sheet(size);
+        assert_eq!(whole.fitted(size, 0.5).width_mm, 200.0 * MARGIN);
+        assert_eq!(whole.fitted(size, 2.0).width_mm, 600.0 * MARGIN);
+        let closer = Camera {
+            width_mm: 50.0,
+            ..whole
+        };
+        assert_eq!(closer.fitted(size, 2.0), closer);
+    }
+}

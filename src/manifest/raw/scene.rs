@@ -1,0 +1,171 @@
+//! Scenes and tours as written.
+
+use super::{
+    super::{
+        decode::{Brief, List},
+        exhibit::{CompareMode, MAX_LAMPS, MAX_OVERLAYS, SideName},
+        macros::record,
+    },
+    RawWording,
+    values::{
+        DistanceMm, Fraction, Id, LampLux, Language, Level, MemberText, PlaceMm, RoomLux, Seconds,
+        Temperature, TiltDeg, TurnDeg, ViewMm,
+    },
+};
+
+record! {
+    /// A view: everything that decides a picture.
+    pub struct RawScene {
+        required {
+            /// The name by which tours, hotspots, links and commands refer to the scene.
+            id: Id,
+        }
+        optional {
+            /// The id of a scene from which everything is taken that is not given here.
+            like: Id,
+            /// What the scene is called.
+            title: RawWording,
+            /// A few lines about what there is to see.
+            text: RawWording,
+            /// The id of the drawing; may be left out where there is only one.
+            drawing: Id,
+            /// The side. Without it: recto.
+            side: SideName,
+            /// The id of the state of conservation, or none for the sheet as its sides describe
+            /// it.
+            state: Id,
+            /// The overlays, from the lowest: their ids, or tables with an opacity.
+            overlays: List<Brief<Id, RawShownOverlay>, 0, MAX_OVERLAYS>,
+            /// What is shown against each other.
+            compare: RawCompare,
+            /// Where the eye is. Without it: above the whole sheet.
+            camera: RawCamera,
+            /// The ids of the lamps. Without it: the first lamp of the manifest.
+            lamps: List<Id, 0, MAX_LAMPS>,
+            /// Even light from the whole room. Without it: none.
+            ambient: RawAmbient,
+            /// What a display shows at full level.
+            exposure: RawExposure,
+            /// The language of the texts, by its BCP 47 tag. Without it: the visitor's.
+            language: Language,
+        }
+        rules []
+    }
+}
+
+record! {
+    /// An overlay on a scene.
+    pub struct RawShownOverlay {
+        required {
+            /// The id of the overlay.
+            id: Id,
+        }
+        optional {
+            /// How opaque it lies there, 0 to 1. Without it: 1.
+            opacity: Fraction,
+        }
+        rules []
+    }
+}
+
+record! {
+    /// A comparison.
+    pub struct RawCompare {
+        required {
+            /// How the members are shown against each other.
+            mode: CompareMode,
+            /// The members, such as state:before, side:verso, overlay:damage, drawing:landscape.
+            of: List<MemberText, 2, 8>,
+        }
+        optional {}
+        rules []
+    }
+}
+
+record! {
+    /// The eye.
+    pub struct RawCamera {
+        required {}
+        optional {
+            /// What it looks at, in mm from the left and top edges of the side. Without it: the
+            /// centre.
+            centre_mm: [PlaceMm; 2],
+            /// The width of the view at this point in mm. Without it: the whole sheet.
+            width_mm: ViewMm,
+            /// How far the eye leans from straight above towards the bottom edge, in degrees.
+            tilt_deg: TiltDeg,
+            /// How far the eye walks around the sheet, in degrees, anticlockwise as seen from
+            /// above.
+            turn_deg: TurnDeg,
+            /// How far the eye is away in mm. Without it: infinitely far, so that there is no
+            /// perspective.
+            distance_mm: DistanceMm,
+        }
+        rules []
+    }
+}
+
+record! {
+    /// Even light from the whole room.
+    pub struct RawAmbient {
+        required {
+            /// The illuminance that it alone gives to the sheet, in lx.
+            lux: RoomLux,
+        }
+        optional {
+            /// Its colour temperature in K. Without it: 6504.
+            kelvin: Temperature,
+        }
+        rules []
+    }
+}
+
+record! {
+    /// What a display shows at full level.
+    pub struct RawExposure {
+        required {}
+        optional {
+            /// The illuminance in lx at which a perfectly white sheet is shown at this level.
+            /// Without it: what the scene's own light gives to the centre of the sheet.
+            lux: LampLux,
+            /// The linear display level of that white sheet. Without it: 1.
+            level: Level,
+            /// The colour temperature in K that is shown as neutral. Without it: 6504.
+            white_kelvin: Temperature,
+        }
+        rules []
+    }
+}
+
+record! {
+    /// A series of scenes that runs by itself.
+    pub struct RawTour {
+        required {
+            /// The name by which an installation refers to the tour; attract runs when nobody is
+            /// there.
+            id: Id,
+            /// The scenes in their order: their ids, or tables with a time.
+            scenes: List<Brief<Id, RawStop>, 1, 1000>,
+        }
+        optional {
+            /// What the tour is called.
+            title: RawWording,
+        }
+        rules []
+    }
+}
+
+record! {
+    /// A scene of a tour.
+    pub struct RawStop {
+        required {
+            /// The id of the scene.
+            scene: Id,
+        }
+        optional {
+            /// How long it stays, in seconds. Without it: 10.
+            seconds: Seconds,
+        }
+        rules []
+    }
+}

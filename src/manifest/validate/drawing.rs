@@ -1,0 +1,359 @@
+//! Drawings: paper, shape, sides, states, overlays and hotspots.
+
+use glam::DVec2;
+
+use super::{
+    super::{
+        decode::{Brief, List, Pattern},
+        document::{Trail, Words},
+        exhibit::{
+            Drawing, FlipAxis, HeightMap, Hotspot, LegendEntry, MapFile, Overlay, OverlayKind,
+            Paper, Side, SideName, SidePatch, Source, State, Surface,
+        },
+        raw::{
+            RawCategorical, RawDrawing, RawHotspot, RawOverlay, RawOverlayKind, RawPaper, RawSide,
+            RawState, RawSurface, values::PaperName,
+        },
+    },
+    Validator,
+    names::Names,
+    placement::Placement,
+    side::Named,
+};
+use crate::{
+    optics::medium::MediumId,
+    units::{Micrometres, Millimetres},
+};
+
+/// A sheet of drawing paper where the manifest says nothing.
+const DEFAULT_PAPER: &str = "laid";
+const DEFAULT_THICKNESS_UM: f64 = 150.0;
+/// The word by which a scene asks for no state.
+pub(super) const NO_STATE: &str = "none";
+
+impl Validator<'_, '_> {
+    pub(super) fn drawing(
+        &mut self,
+        raw: &RawDrawing,
+        trail: &Trail,
+        scenes: &Names,
+    ) -> Option<Drawing> {
+        let size_mm = DVec2::from(raw.size_mm.map(|mm| mm.0));
+        let id = raw.id.as_str();
+        let recto = self.whole_side(&raw.recto.0, trail, SideName::Recto, size_mm);
+        let verso = raw
+            .verso
+            .as_ref()
+            .map(|side| self.whole_side(&side.0, trail, SideName::Verso, size_mm));
+        let flip = raw
+            .verso
+            .as_ref()
+            .and_then(|side| side.0.register.as_ref()?.flip);
+        let outline = raw.outline.as_ref().and_then(|map| {
+            let named = Named::plain(map, &trail.key("outline"));
+            self.covering_map(&named, size_mm)
+        });
+        let transmission = raw.transmission.as_ref().and_then(|transmission| {
+            self.not_shown_yet(format!("Drawing \"{id}\": transmission is not shown yet."));
+            let trail = trail.key("transmission").key("map");
+            self.covering_map(&Named::plain(&transmission.map, &trail), size_mm)
+        });
+        if raw.hotspot.is_some() {
+            self.not_shown_yet(format!("Drawing \"{id}\": hotspots are not shown yet."));
+        }
+        let states = self.each(
+            &raw.state,
+            &trail.key("state"),
+            |validator, state, trail| validator.state(state, trail, size_mm),
+        );
+        let overlays = self.each(
+            &raw.overlay,
+            &trail.key("overlay"),
+            |validator, raw, trail| validator.overlay(raw, trail, size_mm),
+        );
+        let hotspots = self.each(
+            &raw.hotspot,
+            &trail.key("hotspot"),
+            |validator, raw, trail| validator.hotspot(raw, trail, size_mm, scenes),
+        );
+        let facts = DrawingFacts::of(raw);
+        self.unique(&facts.states, &trail.key("state"));
+        self.unique(&facts.overlays, &trail.key("overlay"));
+        Some(Drawing {
+            id: id.to_owned(),
+            title: self.wording(raw.title.as_ref(), &trail.key("title")),
+            caption: self.wording(raw.caption.as_ref(), &trail.key("caption")),
+            credit: raw
+                .credit
+                .as_ref()
+                .map_or_else(String::new, |t| t.as_str().to_owned()),
+            date: raw
+                .date
+                .as_ref()
+                .map_or_else(String::new, |t| t.as_str().to_owned()),
+            inventory: raw
+                .inventory
+                .as_ref()
+                .map_or_else(String::new, |t| t.as_str().to_owned()),
+            size_mm,
+            paper: paper(raw.paper.as_ref())?,
+            outline,
+            surface: self.surface(raw.surface.as_ref(), &trail.key("surface"), size_mm)?,
+            recto: recto?,
+            verso: match verso {
+                Some(verso) => Some(verso?),
+                None => None,
+            },
+            flip: flip.unwrap_or(FlipAxis::Vertical),
+            transmission,
+            states: states?,
+            overlays: overlays?,
+            hotspots: hotspots?,
+        })
+    }
+
+    /// Validates each element of a list, all before the first fault ends it.
+    fn each<R, T>(
+        &mut self,
+        list: &Option<List<R>>,
+        trail: &Trail,
+        mut validate: impl FnMut(&mut Self, &R, &Trail) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let list = list.iter().flat_map(List::iter);
+        let values: Vec<Option<T>> = list
+            .map(|(i, raw)| validate(self, raw, &trail.index(i)))
+            .collect();
+        values.into_iter().collect()
+    }
+
+    fn whole_side(
+        &mut self,
+        raw: &RawSide,
+        drawing: &Trail,
+        name: SideName,
+        size_mm: DVec2,
+    ) -> Option<Side> {
+        let key = match name {
+            SideName::Recto => "recto",
+            SideName::Verso => "verso",
+        };
+        let maps = self.side(raw, &drawing.key(key), name, false, size_mm);
+        Some(Side {
+            albedo: maps.albedo?,
+            normal: maps.normal,
+            height: maps.height,
+            roughness: maps.roughness,
+            media: maps.media.unwrap_or_default(),
+        })
+    }
+
+    /// A picture that just covers the sheet.
+    fn covering_map(&mut self, named: &Named<'_>, size_mm: DVec2) -> Option<MapFile> {
+        let placement = Placement {
+            register: None,
+            control_points: None,
+            trail: &named.trail,
+        };
+        self.map_file(named, placement, size_mm, Source::Assumed)
+            .map(|(map, _)| map)
+    }
+
+    fn surface(
+        &mut self,
+        raw: Option<&RawSurface>,
+        trail: &Trail,
+        size_mm: DVec2,
+    ) -> Option<Surface> {
+        let Some(raw) = raw else {
+            return Some(Surface::Flat);
+        };
+        if let Some(height) = &raw.height {
+            let trail = trail.key("height");
+            let range_um = height.range_um.map(|um| um.0);
+            self.has_extent(range_um, &trail.key("range_um"));
+            let named = Named::of_table(&height.file, height.source, &trail);
+            let file = self.covering_map(&named, size_mm)?;
+            return Some(Surface::Height(HeightMap { file, range_um }));
+        }
+        let gltf = raw.gltf.as_ref()?;
+        self.model(gltf, &trail.key("gltf")).map(Surface::Gltf)
+    }
+
+    fn state(&mut self, raw: &RawState, trail: &Trail, size_mm: DVec2) -> Option<State> {
+        if raw.id.as_str() == NO_STATE {
+            let words = Words::new(
+                format!("the id \"{NO_STATE}\""),
+                "any other id",
+                "choose another: a scene asks by this word for no state",
+            );
+            self.report.fault(&trail.key("id"), words);
+        }
+        let mut patch = |side: &Option<RawSide>, name, key| {
+            side.as_ref().map_or_else(SidePatch::default, |side| {
+                self.side(side, &trail.key(key), name, true, size_mm)
+            })
+        };
+        let recto = patch(&raw.recto, SideName::Recto, "recto");
+        let verso = patch(&raw.verso, SideName::Verso, "verso");
+        Some(State {
+            id: raw.id.as_str().to_owned(),
+            title: self.wording(raw.title.as_ref(), &trail.key("title")),
+            date: self.date(raw.date.as_ref(), &trail.key("date")),
+            recto,
+            verso,
+        })
+    }
+
+    fn overlay(&mut self, raw: &RawOverlay, trail: &Trail, size_mm: DVec2) -> Option<Overlay> {
+        let common = &raw.common;
+        self.refuse_flip(common.register.as_ref(), trail);
+        let named = Named::of_table(&common.file, common.source, trail);
+        let placement = Placement {
+            register: common.register.as_ref(),
+            control_points: common.control_points.as_ref(),
+            trail,
+        };
+        let map = self.map_file(&named, placement, size_mm, Source::Assumed);
+        let title = self.wording(common.title.as_ref(), &trail.key("title"));
+        let kind = match &raw.kind {
+            RawOverlayKind::Categorical(categorical) => {
+                if let Some((file, header)) = &map {
+                    self.exact_colours(&file.path, header, &named.trail);
+                }
+                OverlayKind::Categorical(self.legend(categorical, &trail.key("legend")))
+            }
+            RawOverlayKind::Continuous(continuous) => {
+                let range = continuous.range.map(|value| value.0);
+                self.has_extent(range, &trail.key("range"));
+                OverlayKind::Continuous {
+                    colour_map: continuous.colour_map.unwrap_or_default(),
+                    unit: continuous.unit.as_str().to_owned(),
+                    range,
+                }
+            }
+            RawOverlayKind::Picture(picture) => {
+                OverlayKind::Picture(picture.encoding.unwrap_or_default())
+            }
+        };
+        let (file, _) = map?;
+        let side = common.side.unwrap_or_default();
+        Some(Overlay {
+            id: common.id.as_str().to_owned(),
+            title,
+            side,
+            file,
+            kind,
+        })
+    }
+
+    fn legend(&mut self, raw: &RawCategorical, trail: &Trail) -> Vec<LegendEntry> {
+        let mut entries: Vec<LegendEntry> = Vec::new();
+        for (i, entry) in raw.legend.iter() {
+            let trail = trail.index(i);
+            let Some(colour) = crate::colour::parse_hex(entry.colour.as_str()) else {
+                continue;
+            };
+            if entries.iter().any(|earlier| earlier.colour == colour) {
+                let words = Words::new(
+                    format!("the colour {} a second time", entry.colour.as_str()),
+                    "each colour once",
+                    "give each category a colour of its own",
+                );
+                self.report.fault(&trail.key("colour"), words);
+            }
+            let label = self.wording(Some(&entry.label), &trail.key("label"));
+            entries.push(LegendEntry { colour, label });
+        }
+        entries
+    }
+
+    fn hotspot(
+        &mut self,
+        raw: &RawHotspot,
+        trail: &Trail,
+        size_mm: DVec2,
+        scenes: &Names,
+    ) -> Option<Hotspot> {
+        let at_mm = DVec2::from(raw.at_mm.map(|mm| mm.0));
+        if at_mm.cmplt(DVec2::ZERO).any() || at_mm.cmpgt(size_mm).any() {
+            let words = Words::new(
+                format!("a place beside the sheet, {} mm, {} mm", at_mm.x, at_mm.y),
+                format!("0 to {} mm and 0 to {} mm", size_mm.x, size_mm.y),
+                "measure from the left and top edges",
+            );
+            self.report.fault(&trail.key("at_mm"), words);
+        }
+        let label = self.wording(raw.label.as_ref(), &trail.key("label"));
+        let scene = self.resolve(raw.scene.as_str(), scenes, &trail.key("scene"))?;
+        Some(Hotspot {
+            side: raw.side.unwrap_or_default(),
+            at_mm,
+            label,
+            scene,
+        })
+    }
+}
+
+/// What scenes need to know of a drawing.
+pub(super) struct DrawingFacts {
+    pub size_mm: DVec2,
+    pub has_verso: bool,
+    pub states: Names,
+    pub overlays: Names,
+    /// The side of each overlay by its index.
+    pub overlay_sides: Vec<(usize, SideName)>,
+}
+
+impl DrawingFacts {
+    pub fn of(raw: &RawDrawing) -> Self {
+        let states = raw.state.iter().flat_map(List::iter);
+        let overlays = || raw.overlay.iter().flat_map(List::iter);
+        Self {
+            size_mm: DVec2::from(raw.size_mm.map(|mm| mm.0)),
+            has_verso: raw.verso.is_some(),
+            states: Names::new(
+                "state of this drawing",
+                states.map(|(i, state)| (i, &state.id)),
+                raw.state.as_ref().is_some_and(List::has_holes),
+            ),
+            overlays: Names::new(
+                "overlay of this drawing",
+                overlays().map(|(i, overlay)| (i, &overlay.common.id)),
+                raw.overlay.as_ref().is_some_and(List::has_holes),
+            ),
+            overlay_sides: overlays()
+                .map(|(i, overlay)| (i, overlay.common.side.unwrap_or_default()))
+                .collect(),
+        }
+    }
+}
+
+/// `None` only if the catalogue lacks the default paper.
+fn paper(raw: Option<&Brief<PaperName, RawPaper>>) -> Option<Paper> {
+    let (name, details) = match raw {
+        None => (None, None),
+        Some(Brief::Short(name)) => (Some(name.0), None),
+        Some(Brief::Full(details)) => (details.kind.map(|name| name.0), Some(details)),
+    };
+    let kind: MediumId = name.or_else(|| DEFAULT_PAPER.parse().ok())?;
+    let catalogue = kind.medium();
+    Some(Paper {
+        kind,
+        thickness: Micrometres(
+            details
+                .and_then(|d| d.thickness_um)
+                .map_or(DEFAULT_THICKNESS_UM, |um| um.0),
+        ),
+        chain_lines: details
+            .and_then(|d| d.chain_lines_mm)
+            .map(|mm| Millimetres(mm.0)),
+        roughness: details
+            .and_then(|d| d.roughness)
+            .map_or(catalogue.roughness, |a| a.0),
+        index: details
+            .and_then(|d| d.index)
+            .map_or(catalogue.index, |n| n.0),
+        specular: details.and_then(|d| d.specular).map_or(1.0, |s| s.0),
+        source: details.and_then(|d| d.source).unwrap_or(Source::Assumed),
+    })
+}

@@ -1,0 +1,226 @@
+//! Files of the exhibit: there, inside its folder, readable, and pictures that can be shown.
+
+use std::{
+    fs,
+    io::{self, Read},
+    path::{Component, Path, PathBuf},
+};
+
+use super::super::{
+    decode::Pattern,
+    document::{Trail, Words},
+    fault::{did_you_mean, quote},
+    raw::values::FilePath,
+};
+use super::Validator;
+use crate::maps::{self, Header, MAX_SIDE, MapError};
+
+impl Validator<'_, '_> {
+    /// The path of a file of the exhibit, named at `trail`.
+    pub(super) fn file(&mut self, file: &FilePath, trail: &Trail) -> Option<PathBuf> {
+        let words = match self.inside(file) {
+            Ok(path) => return Some(path),
+            Err(words) => words,
+        };
+        self.report.fault(trail, words);
+        None
+    }
+
+    fn inside(&self, file: &FilePath) -> Result<PathBuf, Words> {
+        let quoted = quote(file.as_str());
+        if file.as_str().contains('\\') {
+            return Err(Words::new(
+                quoted,
+                FilePath::ALLOWED,
+                "write / instead of \\",
+            ));
+        }
+        let path = self.folder.join(file.as_str());
+        if leaves_its_folder(Path::new(file.as_str())) {
+            return Err(Words::new(
+                format!("{quoted}, which leaves the exhibit's folder"),
+                FilePath::ALLOWED,
+                FilePath::REMEDY,
+            ));
+        }
+        let real = path.canonicalize().map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => absent(file, &path),
+            _ => unreadable(&quoted, &error),
+        })?;
+        if !real.starts_with(&self.real_folder) {
+            return Err(Words::new(
+                format!("{quoted}, a link that leads out of the exhibit's folder"),
+                FilePath::ALLOWED,
+                "copy the file itself into the exhibit's folder",
+            ));
+        }
+        if !real.is_file() {
+            return Err(Words::new(
+                format!("{quoted}, which is not a file"),
+                FilePath::ALLOWED,
+                "name a file in it",
+            ));
+        }
+        Ok(path)
+    }
+
+    /// A picture of the exhibit, named at `trail`, and what its header says.
+    pub(super) fn picture(&mut self, file: &FilePath, trail: &Trail) -> Option<(PathBuf, Header)> {
+        let path = self.file(file, trail)?;
+        match maps::probe(&path) {
+            Ok(header) => Some((path, header)),
+            Err(error) => {
+                self.report
+                    .fault(trail, map_words(file.as_str(), &error, PICTURE));
+                None
+            }
+        }
+    }
+
+    /// A modelled shape of the exhibit, named at `trail`.
+    pub(super) fn model(&mut self, file: &FilePath, trail: &Trail) -> Option<PathBuf> {
+        let path = self.file(file, trail)?;
+        match maps::surface::load_gltf(&path) {
+            Ok(_) => Some(path),
+            Err(error) => {
+                self.report
+                    .fault(trail, map_words(file.as_str(), &error, MODEL));
+                None
+            }
+        }
+    }
+
+    /// A photometric file of the exhibit, named at `trail`.
+    pub(super) fn photometry(&mut self, file: &FilePath, trail: &Trail) -> Option<PathBuf> {
+        let path = self.file(file, trail)?;
+        match check_ies(&path) {
+            Ok(()) => Some(path),
+            Err(reason) => {
+                let found = format!("{} ({reason})", quote(file.as_str()));
+                let allowed = "a photometric file, IES LM-63";
+                self.report
+                    .fault(trail, Words::new(found, allowed, "export it again"));
+                None
+            }
+        }
+    }
+}
+
+/// Every edition of LM-63 since 1991 begins with its name.
+fn check_ies(path: &Path) -> Result<(), String> {
+    let mut start = [0; 5];
+    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    match read {
+        Ok(()) if start == *b"IESNA" || start == *b"IES:L" => Ok(()),
+        Ok(()) => Err("it does not begin with IESNA".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// Whether a relative path climbs above where it starts, even if it comes back.
+fn leaves_its_folder(path: &Path) -> bool {
+    let mut depth = 0_usize;
+    for component in path.components() {
+        match component {
+            Component::Normal(_) => depth += 1,
+            Component::CurDir => {}
+            Component::ParentDir if depth > 0 => depth -= 1,
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => return true,
+        }
+    }
+    false
+}
+
+fn absent(file: &FilePath, path: &Path) -> Words {
+    let quoted = quote(file.as_str());
+    if path.symlink_metadata().is_ok() {
+        return Words::new(
+            format!("{quoted}, a link to a file that is not there"),
+            FilePath::ALLOWED,
+            "copy the file itself into the exhibit's folder",
+        );
+    }
+    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+    let others = names_beside(path);
+    Words::new(
+        format!("{quoted}, which is not there"),
+        FilePath::ALLOWED,
+        did_you_mean(
+            &wanted,
+            others.iter().map(String::as_str),
+            "put the file there or correct the path",
+        ),
+    )
+}
+
+/// The names of the files in the folder of `path`.
+fn names_beside(path: &Path) -> Vec<String> {
+    let entries = path.parent().and_then(|folder| fs::read_dir(folder).ok());
+    let mut names: Vec<String> = entries
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .collect();
+    // Folders are read in any order, and the same fault should read the same everywhere.
+    names.sort();
+    names
+}
+
+fn unreadable(quoted: &str, error: &io::Error) -> Words {
+    Words::new(
+        format!("{quoted}, which cannot be read ({error})"),
+        "a readable file",
+        "check its name and permissions",
+    )
+}
+
+/// What pictures may be, as the `allowed` part of a fault.
+pub(crate) const PICTURE: &str = "a PNG, JPEG, TIFF or OpenEXR picture in grey or RGB";
+/// What shapes may be.
+pub(super) const MODEL: &str = "one .glb file with a triangle mesh and texture coordinates";
+
+/// What a fault says about a picture or shape that cannot be used.
+pub(crate) fn map_words(name: &str, error: &MapError, allowed: &str) -> Words {
+    let quoted = quote(name);
+    match error {
+        MapError::Read { reason, .. } | MapError::Write { reason, .. } => {
+            unreadable(&quoted, reason)
+        }
+        MapError::UnknownFormat { .. } => Words::new(
+            format!("{quoted}, which is no picture of a known format"),
+            allowed,
+            "export it as one of these",
+        ),
+        MapError::Size { width, height, .. } => Words::new(
+            format!("{quoted}, a picture of {width} × {height} pixels"),
+            format!("1 to {MAX_SIDE} pixels a side"),
+            "resample it",
+        ),
+        MapError::Unsupported { found, remedy, .. } => {
+            Words::new(format!("{quoted}, which {found}"), allowed, *remedy)
+        }
+        MapError::Damaged { detail, .. } => Words::new(
+            format!("{quoted}, which is damaged ({detail})"),
+            "a whole file",
+            "export or copy it again",
+        ),
+        MapError::Profile { detail, .. } => Words::new(
+            format!("{quoted}, a picture whose colour profile cannot be used ({detail})"),
+            "an ICC profile for its own pixels",
+            "embed another one, or set encoding to \"srgb\" or \"linear\"",
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_may_go_up_only_as_far_as_it_went_down() {
+        assert!(!leaves_its_folder(Path::new("a/../b.png")));
+        assert!(leaves_its_folder(Path::new("a/../../b.png")));
+        assert!(leaves_its_folder(Path::new("../exhibit/b.png")));
+        assert!(leaves_its_folder(Path::new("/b.png")));
+    }
+}

@@ -1,0 +1,268 @@
+//! Lamps: places from angles, and every photometric unit into the one that is calculated with.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    super::{
+        decode::{List, Pattern},
+        document::{Trail, Words},
+        exhibit::{Lamp, LampKind, Wording},
+        raw::{
+            RawManifest,
+            lamp::{RawLamp, RawLampKind, Stand},
+            values::{LampCandela, LampLumen, LampLux, LampNits, PositionMm},
+        },
+    },
+    Validator,
+};
+use crate::{
+    optics::lamp_units,
+    units::{Candela, Degrees, Kelvin, Lux, Nits},
+};
+
+/// Daylight, and what a display shows as neutral unless a scene says otherwise.
+pub(super) const DAYLIGHT_K: f64 = 6504.0;
+/// The id of the lamp that a manifest without lamps has.
+pub(super) const DEFAULT_ID: &str = "reference";
+/// Where a lamp stands whose distance is not given: a copy stand's arm.
+const DEFAULT_DISTANCE_MM: f64 = 600.0;
+
+impl Validator<'_, '_> {
+    /// The lamps of the manifest, or the reference lamp: distant, 1000 lx, from the top left at
+    /// 45°, in the light that is shown as neutral, so that a photograph looks as it is.
+    pub(super) fn lamps(&mut self, raw: &RawManifest, trail: &Trail) -> Option<Vec<Lamp>> {
+        let Some(lamps) = &raw.lamp else {
+            return Some(vec![Lamp {
+                id: DEFAULT_ID.to_owned(),
+                title: Wording::default(),
+                kelvin: Kelvin(DAYLIGHT_K),
+                kind: LampKind::Distant {
+                    illuminance: Lux(1000.0),
+                    elevation: Degrees(45.0),
+                    azimuth: Degrees(135.0),
+                },
+            }]);
+        };
+        let lamps: Vec<_> = List::iter(lamps)
+            .map(|(i, lamp)| self.lamp(lamp, &trail.index(i)))
+            .collect();
+        lamps.into_iter().collect()
+    }
+
+    /// One lamp, written at `trail`.
+    pub(super) fn lamp(&mut self, raw: &RawLamp, trail: &Trail) -> Option<Lamp> {
+        let id = raw.common.id.as_str().to_owned();
+        let title = self.wording(raw.common.title.as_ref(), &trail.key("title"));
+        let kelvin = Kelvin(raw.common.kelvin.map_or(DAYLIGHT_K, |kelvin| kelvin.0));
+        let kind = self.lamp_kind(raw, trail)?;
+        let unseen = match kind {
+            LampKind::Disc { .. } => Some("disc lamps are"),
+            LampKind::Ies { .. } => Some("lamps by a photometric file are"),
+            LampKind::LightTable { .. } => Some("light tables are"),
+            LampKind::Distant { .. }
+            | LampKind::Point { .. }
+            | LampKind::Spot { .. }
+            | LampKind::Rectangle { .. } => None,
+        };
+        if let Some(unseen) = unseen {
+            self.not_shown_yet(format!("Lamp \"{id}\": {unseen} not shown yet."));
+        }
+        Some(Lamp {
+            id,
+            title,
+            kelvin,
+            kind,
+        })
+    }
+
+    fn lamp_kind(&mut self, raw: &RawLamp, trail: &Trail) -> Option<LampKind> {
+        match &raw.kind {
+            RawLampKind::Distant(lamp) => Some(LampKind::Distant {
+                illuminance: Lux(lamp.lux_at_sheet.0),
+                elevation: Degrees(lamp.elevation_deg.0),
+                azimuth: Degrees(lamp.azimuth_deg.0),
+            }),
+            RawLampKind::Point(lamp) => {
+                let position_mm = self.stand(&lamp.stand(), trail)?;
+                let intensity = intensity(
+                    (lamp.lux_at_sheet, lamp.candela, lamp.lumen),
+                    position_mm,
+                    lamp_units::point_intensity,
+                )?;
+                Some(LampKind::Point {
+                    intensity: Candela(intensity),
+                    position_mm,
+                })
+            }
+            RawLampKind::Spot(lamp) => {
+                let (hotspot, falloff) = (lamp.hotspot_deg.0, lamp.falloff_deg.0);
+                let position_mm = self.stand(&lamp.stand(), trail);
+                if hotspot > falloff {
+                    let words = Words::new(
+                        format!("{hotspot}°, wider than falloff_deg"),
+                        format!("at most falloff_deg, {falloff}°"),
+                        "exchange the two or widen falloff_deg",
+                    );
+                    self.report.fault(&trail.key("hotspot_deg"), words);
+                    return None;
+                }
+                let position_mm = position_mm?;
+                let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
+                let cosines = [hotspot, falloff].map(|degrees| degrees.to_radians().cos());
+                let [cos_hotspot, cos_falloff] = cosines;
+                let axis = (aim_mm - position_mm).normalize();
+                let cos = axis.dot(-position_mm.normalize());
+                let share = lamp_units::spot_share(cos, cos_hotspot, cos_falloff);
+                if lamp.lux_at_sheet.is_some() && share == 0.0 {
+                    self.sheet_unlit(trail);
+                    return None;
+                }
+                let intensity = intensity(
+                    (
+                        lamp.lux_at_sheet.map(|lux| LampLux(lux.0 / share)),
+                        lamp.candela,
+                        lamp.lumen,
+                    ),
+                    position_mm,
+                    |lumen| lamp_units::spot_intensity(lumen, cos_hotspot, cos_falloff),
+                )?;
+                Some(LampKind::Spot {
+                    intensity: Candela(intensity),
+                    position_mm,
+                    aim_mm,
+                    hotspot: Degrees(hotspot),
+                    falloff: Degrees(falloff),
+                })
+            }
+            RawLampKind::Rectangle(lamp) => {
+                let size_mm = DVec2::from(lamp.size_mm.map(|mm| mm.0));
+                let position_mm = self.stand(&lamp.stand(), trail)?;
+                let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
+                let form = lamp_units::rectangle_form(position_mm, aim_mm, size_mm, DVec3::ZERO);
+                let light = (lamp.lux_at_sheet, lamp.nits, lamp.lumen);
+                let luminance = self.luminance(light, form, size_mm.x * size_mm.y, trail)?;
+                Some(LampKind::Rectangle {
+                    luminance,
+                    position_mm,
+                    aim_mm,
+                    size_mm,
+                })
+            }
+            RawLampKind::Disc(lamp) => {
+                let diameter_mm = lamp.diameter_mm.0;
+                let position_mm = self.stand(&lamp.stand(), trail)?;
+                let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
+                let form = lamp_units::disc_form(position_mm, aim_mm, diameter_mm, DVec3::ZERO);
+                let area = std::f64::consts::PI * diameter_mm * diameter_mm / 4.0;
+                let light = (lamp.lux_at_sheet, lamp.nits, lamp.lumen);
+                let luminance = self.luminance(light, form, area, trail)?;
+                Some(LampKind::Disc {
+                    luminance,
+                    position_mm,
+                    aim_mm,
+                    diameter_mm,
+                })
+            }
+            RawLampKind::Ies(lamp) => {
+                let path = self.photometry(&lamp.file, &trail.key("file"));
+                let position_mm = self.stand(&lamp.stand(), trail)?;
+                let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
+                Some(LampKind::Ies {
+                    path: path?,
+                    position_mm,
+                    aim_mm,
+                })
+            }
+            RawLampKind::LightTable(lamp) => Some(LampKind::LightTable {
+                luminance: Nits(lamp.nits.0),
+            }),
+        }
+    }
+
+    /// Where a lamp stands in the table frame, above the sheet.
+    fn stand(&mut self, stand: &Stand, trail: &Trail) -> Option<DVec3> {
+        if let Some(position) = stand.position_mm {
+            let position = vector(position);
+            if position.z > 0.0 {
+                return Some(position);
+            }
+            let words = Words::new(
+                format!("a lamp {} mm above the plane of the sheet", position.z),
+                "a third coordinate above 0 mm",
+                "raise the lamp; light through the sheet comes from kind = \"light-table\"",
+            );
+            self.report.fault(&trail.key("position_mm").index(2), words);
+            return None;
+        }
+        let elevation = stand.elevation_deg?.0.to_radians();
+        let azimuth = stand.azimuth_deg?.0.to_radians();
+        let distance = stand.distance_mm.map_or(DEFAULT_DISTANCE_MM, |mm| mm.0);
+        let (sin, cos) = elevation.sin_cos();
+        Some(DVec3::new(cos * azimuth.cos(), cos * azimuth.sin(), sin) * distance)
+    }
+
+    fn aim(
+        &mut self,
+        aim: Option<[PositionMm; 3]>,
+        position: DVec3,
+        trail: &Trail,
+    ) -> Option<DVec3> {
+        let aim = aim.map_or(DVec3::ZERO, vector);
+        if aim.distance(position) >= 1.0 {
+            return Some(aim);
+        }
+        let words = Words::new(
+            "an aim at the lamp's own place",
+            "a place at least 1 mm away from it",
+            "aim at the sheet, or leave aim_mm out",
+        );
+        self.report.fault(&trail.key("aim_mm"), words);
+        None
+    }
+
+    fn luminance(
+        &mut self,
+        light: (Option<LampLux>, Option<LampNits>, Option<LampLumen>),
+        form: f64,
+        area_mm2: f64,
+        trail: &Trail,
+    ) -> Option<Nits> {
+        match light {
+            (Some(_), _, _) if form <= 0.0 => {
+                self.sheet_unlit(trail);
+                None
+            }
+            (Some(lux), _, _) => Some(Nits(lux.0 / form)),
+            (_, Some(nits), _) => Some(Nits(nits.0)),
+            (_, _, Some(lumen)) => Some(Nits(lamp_units::area_luminance(lumen.0, area_mm2))),
+            (None, None, None) => None,
+        }
+    }
+
+    fn sheet_unlit(&mut self, trail: &Trail) {
+        let words = Words::new(
+            "an illuminance of the sheet's centre, which the lamp does not shine at",
+            "a lamp whose light reaches the centre",
+            "correct aim_mm, or give the lamp's own strength instead",
+        );
+        self.report.fault(&trail.key("lux_at_sheet"), words);
+    }
+}
+
+/// The intensity of a small lamp in cd from the one unit that is given.
+fn intensity(
+    light: (Option<LampLux>, Option<LampCandela>, Option<LampLumen>),
+    position_mm: DVec3,
+    from_flux: impl FnOnce(f64) -> f64,
+) -> Option<f64> {
+    match light {
+        (Some(lux), _, _) => Some(lamp_units::intensity_for(lux.0, position_mm.length())),
+        (_, Some(candela), _) => Some(candela.0),
+        (_, _, Some(lumen)) => Some(from_flux(lumen.0)),
+        (None, None, None) => None,
+    }
+}
+
+fn vector(mm: [PositionMm; 3]) -> DVec3 {
+    DVec3::from(mm.map(|mm| mm.0))
+}

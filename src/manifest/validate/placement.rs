@@ -1,0 +1,210 @@
+//! How a picture lies on the sheet: by offset, turn and scale, or by control points.
+
+use glam::{DAffine2, DMat2, DVec2};
+
+use super::super::{
+    decode::List,
+    document::{Trail, Words},
+    raw::{RawControlPoint, RawRegister},
+};
+use super::Validator;
+use crate::maps::registration;
+
+/// How far a picture's proportions may be from the sheet's without a word: less than a scan
+/// loses at its edges.
+const ASPECT_TOLERANCE: f64 = 0.02;
+
+/// What the manifest says of a picture's place.
+#[derive(Clone, Copy)]
+pub(super) struct Placement<'p> {
+    pub register: Option<&'p RawRegister>,
+    pub control_points: Option<&'p List<RawControlPoint, 1, 1000>>,
+    /// Of the table that both are keys of.
+    pub trail: &'p Trail,
+}
+
+impl Validator<'_, '_> {
+    /// The way from a side's mm to texture coordinates of a picture of `pixels` that lies on it;
+    /// `picture` is where the picture is named.
+    pub(super) fn uv_from_side(
+        &mut self,
+        placement: Placement<'_>,
+        sheet_mm: DVec2,
+        pixels: [u32; 2],
+        picture: &Trail,
+    ) -> Option<DAffine2> {
+        let moved = placement.register.is_some_and(moves);
+        if placement.control_points.is_none() && !moved {
+            self.warn_of_proportions(sheet_mm, vector(pixels), picture);
+        }
+        if let Some(points) = placement.control_points {
+            return self.by_points(points, sheet_mm, vector(pixels), placement.trail);
+        }
+        Some(placement.register.map_or_else(
+            || DAffine2::from_scale(sheet_mm.recip()),
+            |register| by_register(register, sheet_mm),
+        ))
+    }
+
+    fn by_points(
+        &mut self,
+        points: &List<RawControlPoint, 1, 1000>,
+        sheet_mm: DVec2,
+        pixels: DVec2,
+        trail: &Trail,
+    ) -> Option<DAffine2> {
+        let pairs: Vec<(DVec2, DVec2)> = points
+            .iter()
+            .map(|(_, point)| {
+                (
+                    DVec2::from(point.picture.map(|p| p.0)),
+                    DVec2::from(point.sheet_mm.map(|mm| mm.0)),
+                )
+            })
+            .collect();
+        if points.has_holes() {
+            return None;
+        }
+        let pixels_from_mm = match pairs[..] {
+            [(picture, mm)] => {
+                let scale = pixels / sheet_mm;
+                Ok(DAffine2::from_translation(picture - scale * mm) * DAffine2::from_scale(scale))
+            }
+            [_, _] => registration::similarity(&pairs).map(|fit| fit.px_from_mm),
+            _ => registration::affine(&pairs).map(|fit| fit.px_from_mm),
+        };
+        match pixels_from_mm {
+            Ok(pixels_from_mm) => Some(DAffine2::from_scale(pixels.recip()) * pixels_from_mm),
+            Err(error) => {
+                let words = Words::new(
+                    format!("points that do not place the picture ({error})"),
+                    "points that lie apart and not on one line",
+                    "choose points near the corners",
+                );
+                self.report.fault(&trail.key("control_points"), words);
+                None
+            }
+        }
+    }
+
+    fn warn_of_proportions(&mut self, sheet_mm: DVec2, pixels: DVec2, picture: &Trail) {
+        let ratio = (pixels.x / pixels.y) / (sheet_mm.x / sheet_mm.y);
+        if (ratio - 1.0).abs() <= ASPECT_TOLERANCE {
+            return;
+        }
+        let (percent, compared) = if ratio > 1.0 {
+            (100.0 * (ratio - 1.0), "wider")
+        } else {
+            (100.0 * (1.0 / ratio - 1.0), "taller")
+        };
+        let words = Words::new(
+            format!(
+                "a picture of {} × {} pixels, which is {percent:.0} % {compared} in proportion \
+                 than the sheet of {} × {} mm",
+                pixels.x, pixels.y, sheet_mm.x, sheet_mm.y
+            ),
+            format!(
+                "the sheet's proportions within {:.0} %",
+                100.0 * ASPECT_TOLERANCE
+            ),
+            "check size_mm, crop the picture to the sheet, or register it",
+        );
+        self.report.warn(picture, words);
+    }
+
+    /// Reports what a picture that is not the verso's cannot have.
+    pub(super) fn refuse_flip(&mut self, register: Option<&RawRegister>, trail: &Trail) {
+        if register.is_some_and(|register| register.flip.is_some()) {
+            let words = Words::new(
+                "a flip",
+                "flip in the drawing's verso.register alone",
+                "move it there",
+            );
+            self.report.fault(&trail.key("register").key("flip"), words);
+        }
+    }
+
+    /// Reports two ways of placing at once.
+    pub(super) fn one_way_of_placing(&mut self, placement: Placement<'_>) {
+        if placement.control_points.is_some() && placement.register.is_some_and(moves) {
+            let words = Words::new(
+                "a register beside control_points",
+                "one of the two, but for register.flip",
+                "keep the control points and only flip here",
+            );
+            self.report.fault(&placement.trail.key("register"), words);
+        }
+    }
+}
+
+fn vector([x, y]: [u32; 2]) -> DVec2 {
+    DVec2::new(f64::from(x), f64::from(y))
+}
+
+/// Whether it does more than say how the sheet is turned over.
+fn moves(register: &RawRegister) -> bool {
+    register.offset_mm.is_some() || register.rotate_deg.is_some() || register.scale.is_some()
+}
+
+/// The picture covers the sheet, is scaled and turned anticlockwise about its centre, and then
+/// shifted.
+fn by_register(register: &RawRegister, sheet_mm: DVec2) -> DAffine2 {
+    let centre = sheet_mm / 2.0;
+    let offset = register
+        .offset_mm
+        .map_or(DVec2::ZERO, |mm| DVec2::from(mm.map(|mm| mm.0)));
+    let angle = register
+        .rotate_deg
+        .map_or(0.0, |degrees| degrees.0.to_radians());
+    let scale = register.scale.map_or(1.0, |scale| scale.0);
+    // y runs down, so that an anticlockwise turn has a negative angle.
+    let turn = DMat2::from_angle(-angle) * scale;
+    let side_from_picture = DAffine2::from_translation(centre + offset)
+        * DAffine2::from_mat2(turn)
+        * DAffine2::from_translation(-centre);
+    DAffine2::from_scale(sheet_mm.recip()) * side_from_picture.inverse()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::raw::values::{OffsetMm, Scale, TurnDeg};
+    use super::*;
+
+    const SHEET: DVec2 = DVec2::new(200.0, 100.0);
+
+    fn register(offset: [f64; 2], turn: f64, scale: f64) -> RawRegister {
+        RawRegister {
+            flip: None,
+            offset_mm: Some(offset.map(OffsetMm)),
+            rotate_deg: Some(TurnDeg(turn)),
+            scale: Some(Scale(scale)),
+        }
+    }
+
+    fn close(a: DVec2, b: DVec2) {
+        assert!((a - b).length() < 1e-12, "{a} is not {b}");
+    }
+
+    #[test]
+    fn an_offset_moves_the_picture_right_and_down() {
+        let uv = by_register(&register([20.0, 10.0], 0.0, 1.0), SHEET);
+        close(uv.transform_point2(DVec2::new(20.0, 10.0)), DVec2::ZERO);
+    }
+
+    #[test]
+    fn a_quarter_turn_anticlockwise_brings_the_right_edge_to_the_top() {
+        let uv = by_register(&register([0.0, 0.0], 90.0, 1.0), SHEET);
+        // 50 mm above the centre lies what was 50 mm to its right: three quarters of the width.
+        close(
+            uv.transform_point2(DVec2::new(100.0, 0.0)),
+            DVec2::new(0.75, 0.5),
+        );
+    }
+
+    #[test]
+    fn a_picture_of_twice_the_size_is_seen_in_its_middle_half() {
+        let uv = by_register(&register([0.0, 0.0], 0.0, 2.0), SHEET);
+        close(uv.transform_point2(DVec2::ZERO), DVec2::splat(0.25));
+        close(uv.transform_point2(SHEET), DVec2::splat(0.75));
+    }
+}

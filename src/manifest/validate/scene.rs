@@ -1,0 +1,487 @@
+//! Scenes, with what they take over from each other, and tours.
+
+use glam::DVec2;
+
+use super::{
+    super::{
+        decode::{Brief, List, Pattern},
+        document::{Trail, Words},
+        exhibit::{
+            Ambient, Camera, CompareMode, Comparison, Exposure, Member, Scene, SideName, Tour,
+        },
+        raw::{
+            RawManifest,
+            scene::{RawAmbient, RawCamera, RawCompare, RawExposure, RawScene, RawTour},
+            values::{Choice, Id},
+        },
+    },
+    Validator,
+    drawing::{DrawingFacts, NO_STATE},
+    lamp::DAYLIGHT_K,
+    names::Names,
+};
+use crate::units::{Degrees, Kelvin, Lux};
+
+/// How long a stop of a tour lasts that does not say.
+const DEFAULT_STOP_S: f64 = 10.0;
+
+/// What scenes refer to.
+struct Surroundings<'n> {
+    drawings: Vec<(usize, DrawingFacts)>,
+    drawing_names: &'n Names,
+    lamp_names: &'n Names,
+    exposure: Option<&'n RawExposure>,
+}
+
+impl Validator<'_, '_> {
+    pub(super) fn scenes(
+        &mut self,
+        raw: &RawManifest,
+        root: &Trail,
+        drawing_names: &Names,
+        lamp_names: &Names,
+        scene_names: &Names,
+    ) -> Option<Vec<Scene>> {
+        let surroundings = Surroundings {
+            drawings: raw
+                .drawing
+                .iter()
+                .map(|(i, d)| (i, DrawingFacts::of(d)))
+                .collect(),
+            drawing_names,
+            lamp_names,
+            exposure: raw
+                .exhibit
+                .as_ref()
+                .and_then(|about| about.exposure.as_ref()),
+        };
+        let trail = root.key("scene");
+        let Some(scenes) = &raw.scene else {
+            let scenes = raw.drawing.iter().map(|(i, drawing)| {
+                let scene = RawScene::of_drawing(&drawing.id);
+                self.scene(&scene, &trail.index(i), &surroundings)
+            });
+            return scenes.collect();
+        };
+        // Scenes that others take over from come first, so that what is at fault in them is
+        // reported there alone.
+        let mut chains: Vec<Vec<usize>> = Vec::new();
+        for (i, scene) in scenes.iter() {
+            chains.extend(self.chain(i, scene, scenes, &trail, scene_names));
+        }
+        chains.sort_by_key(Vec::len);
+        let mut done: Vec<(usize, Option<Scene>)> = Vec::new();
+        for chain in &chains {
+            let Some(&own) = chain.first() else { continue };
+            let merged = chain
+                .iter()
+                .filter_map(|index| scenes.iter().find(|(i, _)| i == index))
+                .map(|(_, scene)| scene.clone())
+                .reduce(RawScene::like);
+            let Some(merged) = merged else { continue };
+            let inherits_faults = chain[1..]
+                .iter()
+                .any(|index| self.report.faulty_within(&trail.index(*index)));
+            let mark = self.report.mark();
+            let scene = self.scene(&merged, &trail.index(own), &surroundings);
+            if inherits_faults {
+                self.report.keep_written(mark);
+            }
+            done.push((own, scene));
+        }
+        if done.len() < scenes.iter().count() {
+            return None;
+        }
+        done.sort_by_key(|(index, _)| *index);
+        done.into_iter().map(|(_, scene)| scene).collect()
+    }
+
+    /// A scene and those that it takes over from, in this order; `None` where they come round
+    /// to themselves or one of them is missing.
+    fn chain(
+        &mut self,
+        start: usize,
+        scene: &RawScene,
+        scenes: &List<RawScene>,
+        trail: &Trail,
+        names: &Names,
+    ) -> Option<Vec<usize>> {
+        let mut chain = vec![start];
+        let mut ids = vec![scene.id.as_str()];
+        let mut current = scene;
+        while let Some(like) = &current.like {
+            let last = chain.len() - 1;
+            let parent_trail = trail.index(chain[last]).key("like");
+            // Only the scene itself reports that its reference does not resolve.
+            let parent = if last == 0 {
+                self.resolve(like.as_str(), names, &parent_trail)?
+            } else {
+                names.position(like.as_str())?
+            };
+            ids.push(like.as_str());
+            if let Some(first) = chain.iter().position(|index| *index == parent) {
+                // Of the scenes on the circle the first in the file reports it.
+                if first == 0 && chain.iter().all(|index| *index >= start) {
+                    let words = Words::new(
+                        format!(
+                            "scenes that are like each other in a circle: {}",
+                            ids.join(" → ")
+                        ),
+                        "a scene that is like an earlier one",
+                        "remove one like",
+                    );
+                    self.report.fault(&trail.index(start).key("like"), words);
+                }
+                return None;
+            }
+            chain.push(parent);
+            current = scenes
+                .iter()
+                .find(|(i, _)| *i == parent)
+                .map(|(_, scene)| scene)?;
+        }
+        Some(chain)
+    }
+
+    fn scene(&mut self, raw: &RawScene, trail: &Trail, around: &Surroundings<'_>) -> Option<Scene> {
+        let id = raw.id.as_str().to_owned();
+        let title = self.wording(raw.title.as_ref(), &trail.key("title"));
+        let text = self.wording(raw.text.as_ref(), &trail.key("text"));
+        let language = raw
+            .language
+            .as_ref()
+            .and_then(|language| self.language(language, &trail.key("language")));
+        let lamps = self.scene_lamps(raw, trail, around.lamp_names);
+        let ambient = ambient(raw.ambient.as_ref());
+        if lamps.as_ref().is_some_and(Vec::is_empty) && ambient.illuminance.0 == 0.0 {
+            let words = Words::new(
+                "no light",
+                "at least one lamp, or ambient light",
+                "name a lamp or set ambient.lux",
+            );
+            self.report.fault(&trail.key("lamps"), words);
+        }
+        let drawing = self.scene_drawing(raw, trail, around)?;
+        let facts = &around.drawings.iter().find(|(i, _)| *i == drawing)?.1;
+        let side = raw.side.unwrap_or_default();
+        let state = match &raw.state {
+            Some(id) if id.as_str() != NO_STATE => self
+                .resolve(id.as_str(), &facts.states, &trail.key("state"))
+                .map(Some),
+            _ => Some(None),
+        };
+        let overlays = self.shown_overlays(raw, &trail.key("overlays"), side, facts);
+        let compare = match &raw.compare {
+            Some(compare) => self.comparison(compare, &id, &trail.key("compare"), facts, around),
+            None => Some(None),
+        };
+        let camera = self.camera(raw.camera.as_ref(), &trail.key("camera"), facts.size_mm);
+        Some(Scene {
+            id,
+            title,
+            text,
+            drawing,
+            side,
+            state: state?,
+            overlays: overlays?,
+            compare: compare?,
+            camera,
+            lamps: lamps?,
+            ambient,
+            exposure: exposure(raw.exposure.as_ref(), around.exposure),
+            language,
+        })
+    }
+
+    fn scene_drawing(
+        &mut self,
+        raw: &RawScene,
+        trail: &Trail,
+        around: &Surroundings<'_>,
+    ) -> Option<usize> {
+        let names = around.drawing_names;
+        let trail = trail.key("drawing");
+        if let Some(id) = &raw.drawing {
+            return self.resolve(id.as_str(), names, &trail);
+        }
+        let only = names.only();
+        if only.is_none() && names.words().nth(1).is_some() {
+            let allowed = super::super::fault::quoted_list(names.words());
+            self.report
+                .fault(&trail, Words::new("nothing", allowed, "add drawing"));
+        }
+        only
+    }
+
+    fn scene_lamps(&mut self, raw: &RawScene, trail: &Trail, names: &Names) -> Option<Vec<usize>> {
+        let trail = trail.key("lamps");
+        let Some(lamps) = &raw.lamps else {
+            // Of a faulty first lamp it is not known that it gives no light.
+            return (!names.is_incomplete()).then(|| names.first().into_iter().collect());
+        };
+        let lamps: Vec<_> = lamps
+            .iter()
+            .map(|(i, id)| self.resolve(id.as_str(), names, &trail.index(i)))
+            .collect();
+        lamps.into_iter().collect()
+    }
+
+    fn shown_overlays(
+        &mut self,
+        raw: &RawScene,
+        trail: &Trail,
+        side: SideName,
+        facts: &DrawingFacts,
+    ) -> Option<Vec<(usize, f64)>> {
+        let mut shown = Some(Vec::new());
+        for (i, overlay) in raw.overlays.iter().flat_map(List::iter) {
+            let (id, opacity, trail) = match overlay {
+                Brief::Short(id) => (id, 1.0, trail.index(i)),
+                Brief::Full(full) => {
+                    let opacity = full.opacity.map_or(1.0, |opacity| opacity.0);
+                    (&full.id, opacity, trail.index(i).key("id"))
+                }
+            };
+            let Some(index) = self.resolve(id.as_str(), &facts.overlays, &trail) else {
+                shown = None;
+                continue;
+            };
+            let on = facts.overlay_sides.iter().find(|(i, _)| *i == index);
+            if on.is_some_and(|(_, on)| *on != side) {
+                let words = Words::new(
+                    format!("\"{}\", an overlay of the other side", id.as_str()),
+                    format!("overlays of the {}", side.word()),
+                    "remove it, or show the other side",
+                );
+                self.report.fault(&trail, words);
+            }
+            if let Some(shown) = &mut shown {
+                if shown.iter().any(|(earlier, _)| *earlier == index) {
+                    let words = Words::new(
+                        format!("\"{}\" a second time", id.as_str()),
+                        "each overlay once",
+                        "remove one of the two",
+                    );
+                    self.report.fault(&trail, words);
+                }
+                shown.push((index, opacity));
+            }
+        }
+        shown
+    }
+
+    fn comparison(
+        &mut self,
+        raw: &RawCompare,
+        scene: &str,
+        trail: &Trail,
+        facts: &DrawingFacts,
+        around: &Surroundings<'_>,
+    ) -> Option<Option<Comparison>> {
+        let mut of: Vec<Member> = Vec::new();
+        let mut complete = true;
+        for (i, text) in raw.of.iter() {
+            let trail = trail.key("of").index(i);
+            let Some(member) = self.member(text.as_str(), &trail, facts, around) else {
+                complete = false;
+                continue;
+            };
+            if of.contains(&member) {
+                let words = Words::new(
+                    format!("\"{}\" a second time", text.as_str()),
+                    "members that differ",
+                    "remove one of the two",
+                );
+                self.report.fault(&trail, words);
+            }
+            of.push(member);
+        }
+        let mode = raw.mode;
+        self.not_shown_yet(format!(
+            "Scene \"{scene}\": comparisons ({}) are not shown yet.",
+            word::<CompareMode>(mode)
+        ));
+        complete.then_some(Some(Comparison { mode, of }))
+    }
+
+    fn member(
+        &mut self,
+        text: &str,
+        trail: &Trail,
+        facts: &DrawingFacts,
+        around: &Surroundings<'_>,
+    ) -> Option<Member> {
+        let (kind, id) = text.split_once(':')?;
+        match kind {
+            "state" => self.resolve(id, &facts.states, trail).map(Member::State),
+            "overlay" => self
+                .resolve(id, &facts.overlays, trail)
+                .map(Member::Overlay),
+            "drawing" => self
+                .resolve(id, around.drawing_names, trail)
+                .map(Member::Drawing),
+            _ => {
+                let side = SideName::WORDS.iter().find(|(word, _)| *word == id)?.1;
+                if side == SideName::Verso && !facts.has_verso {
+                    let words = Words::new(
+                        "the verso of a drawing that has none",
+                        "a side with maps",
+                        "add [drawing.verso] or compare something else",
+                    );
+                    self.report.fault(trail, words);
+                }
+                Some(Member::Side(side))
+            }
+        }
+    }
+
+    fn camera(&mut self, raw: Option<&RawCamera>, trail: &Trail, size_mm: DVec2) -> Camera {
+        let whole = Camera::whole_sheet(size_mm);
+        let Some(raw) = raw else { return whole };
+        let centre_mm = raw
+            .centre_mm
+            .map_or(whole.centre_mm, |mm| DVec2::from(mm.map(|mm| mm.0)));
+        if centre_mm.cmplt(DVec2::ZERO).any() || centre_mm.cmpgt(size_mm).any() {
+            let words = Words::new(
+                format!(
+                    "a place beside the sheet, {} mm, {} mm",
+                    centre_mm.x, centre_mm.y
+                ),
+                format!("0 to {} mm and 0 to {} mm", size_mm.x, size_mm.y),
+                "measure from the left and top edges of the side that is shown",
+            );
+            self.report.warn(&trail.key("centre_mm"), words);
+        }
+        Camera {
+            centre_mm,
+            width_mm: raw.width_mm.map_or(whole.width_mm, |mm| mm.0),
+            tilt: Degrees(raw.tilt_deg.map_or(0.0, |degrees| degrees.0)),
+            turn: Degrees(raw.turn_deg.map_or(0.0, |degrees| degrees.0)),
+            distance_mm: raw.distance_mm.map(|mm| mm.0),
+        }
+    }
+
+    pub(super) fn tours(
+        &mut self,
+        raw: &RawManifest,
+        trail: &Trail,
+        scenes: &Names,
+    ) -> Option<Vec<Tour>> {
+        let Some(tours) = &raw.tour else {
+            return Some(Vec::new());
+        };
+        let ids = tours.iter().map(|(i, tour)| (i, &tour.id));
+        self.unique(&Names::new("tour", ids, tours.has_holes()), trail);
+        let tours: Vec<_> = tours
+            .iter()
+            .map(|(i, tour)| self.tour(tour, &trail.index(i), scenes))
+            .collect();
+        tours.into_iter().collect()
+    }
+
+    fn tour(&mut self, raw: &RawTour, trail: &Trail, scenes: &Names) -> Option<Tour> {
+        let id = raw.id.as_str().to_owned();
+        self.not_shown_yet(format!("Tour \"{id}\": tours do not run yet."));
+        let stops: Vec<_> = raw
+            .scenes
+            .iter()
+            .map(|(i, stop)| {
+                let trail = trail.key("scenes").index(i);
+                match stop {
+                    Brief::Short(scene) => Some((
+                        self.resolve(scene.as_str(), scenes, &trail)?,
+                        DEFAULT_STOP_S,
+                    )),
+                    Brief::Full(stop) => {
+                        let trail = trail.key("scene");
+                        let scene = self.resolve(stop.scene.as_str(), scenes, &trail)?;
+                        Some((
+                            scene,
+                            stop.seconds.map_or(DEFAULT_STOP_S, |seconds| seconds.0),
+                        ))
+                    }
+                }
+            })
+            .collect();
+        let title = self.wording(raw.title.as_ref(), &trail.key("title"));
+        Some(Tour {
+            id,
+            title,
+            stops: stops.into_iter().collect::<Option<_>>()?,
+        })
+    }
+}
+
+/// The word that a manifest writes for a value.
+fn word<T: Choice + PartialEq>(value: T) -> &'static str {
+    T::WORDS
+        .iter()
+        .find(|(_, choice)| *choice == value)
+        .map_or("", |(word, _)| *word)
+}
+
+fn ambient(raw: Option<&RawAmbient>) -> Ambient {
+    Ambient {
+        illuminance: Lux(raw.map_or(0.0, |ambient| ambient.lux.0)),
+        kelvin: Kelvin(
+            raw.and_then(|ambient| ambient.kelvin)
+                .map_or(DAYLIGHT_K, |kelvin| kelvin.0),
+        ),
+    }
+}
+
+/// What a scene says of its exposure, and for the rest the exhibit.
+fn exposure(scene: Option<&RawExposure>, exhibit: Option<&RawExposure>) -> Exposure {
+    let first = |get: fn(&RawExposure) -> Option<f64>| {
+        scene.and_then(get).or_else(|| exhibit.and_then(get))
+    };
+    Exposure {
+        illuminance: first(|exposure| exposure.lux.map(|lux| lux.0)).map(Lux),
+        level: first(|exposure| exposure.level.map(|level| level.0)).unwrap_or(1.0),
+        white: Kelvin(
+            first(|exposure| exposure.white_kelvin.map(|kelvin| kelvin.0)).unwrap_or(DAYLIGHT_K),
+        ),
+    }
+}
+
+impl RawScene {
+    /// The scene of a drawing in a manifest without scenes.
+    fn of_drawing(id: &Id) -> Self {
+        Self {
+            id: id.clone(),
+            like: None,
+            title: None,
+            text: None,
+            drawing: Some(id.clone()),
+            side: None,
+            state: None,
+            overlays: None,
+            compare: None,
+            camera: None,
+            lamps: None,
+            ambient: None,
+            exposure: None,
+            language: None,
+        }
+    }
+
+    /// `self`, with what it does not give taken from `other`.
+    fn like(self, other: Self) -> Self {
+        Self {
+            id: self.id,
+            like: self.like,
+            title: self.title.or(other.title),
+            text: self.text.or(other.text),
+            drawing: self.drawing.or(other.drawing),
+            side: self.side.or(other.side),
+            state: self.state.or(other.state),
+            overlays: self.overlays.or(other.overlays),
+            compare: self.compare.or(other.compare),
+            camera: self.camera.or(other.camera),
+            lamps: self.lamps.or(other.lamps),
+            ambient: self.ambient.or(other.ambient),
+            exposure: self.exposure.or(other.exposure),
+            language: self.language.or(other.language),
+        }
+    }
+}
