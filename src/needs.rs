@@ -1,0 +1,274 @@
+//! What a scene requires, and why: the terms of its shader, its maps, the sides that are seen.
+//!
+//! Nothing else decides what is loaded or which pipeline is specialised; `recto check
+//! --explain` prints these reasons.
+
+use glam::DVec2;
+
+use crate::{
+    manifest::exhibit::{
+        ColourMap, Drawing, Exhibit, HeightMap, LampKind, MapFile, NormalMap, Overlay,
+        RoughnessMap, Scene, Side, SideName, Surface,
+    },
+    optics::tier::Tier,
+};
+
+/// From this tilt on, in degrees, a curved sheet can show its other side past its own edge.
+const BOTH_SIDES_TILT_DEG: f64 = 60.0;
+
+/// The parts of the shader that a side needs: one pipeline for each distinct value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Terms {
+    pub tier: Tier,
+    /// Normals and tangents come with the mesh.
+    pub curved: bool,
+    /// A normal map bends the normal.
+    pub normal_map: bool,
+    pub roughness_map: bool,
+    /// A map decides where there is paper.
+    pub outline: bool,
+    /// The sheet's straight edge is in the picture and is smoothed.
+    pub edge: bool,
+    /// All maps of the side lie on the sheet alike: one texture coordinate serves them.
+    pub shared_uv: bool,
+    pub specular: bool,
+    pub ambient: bool,
+    pub area_lamps: bool,
+    pub punctual_lamps: bool,
+    /// How many overlays lie on the side.
+    pub overlays: u32,
+}
+
+/// A map with the property it is read for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MapUse {
+    Albedo(ColourMap),
+    Normal(NormalMap),
+    /// Normals from the slopes of a height map, where no normal map is given; with the size of
+    /// its picture on the sheet in mm.
+    NormalFromHeight(HeightMap, DVec2),
+    Roughness(RoughnessMap),
+    Outline(MapFile),
+    Overlay(Overlay),
+}
+
+impl MapUse {
+    /// The file behind it.
+    pub fn file(&self) -> &MapFile {
+        match self {
+            Self::Albedo(map) => &map.file,
+            Self::Normal(map) => &map.file,
+            Self::NormalFromHeight(map, _) => &map.file,
+            Self::Roughness(map) => &map.file,
+            Self::Outline(file) => file,
+            Self::Overlay(overlay) => &overlay.file,
+        }
+    }
+
+    /// The same, to change where it lies.
+    pub fn file_mut(&mut self) -> &mut MapFile {
+        match self {
+            Self::Albedo(map) => &mut map.file,
+            Self::Normal(map) => &mut map.file,
+            Self::NormalFromHeight(map, _) => &mut map.file,
+            Self::Roughness(map) => &mut map.file,
+            Self::Outline(file) => file,
+            Self::Overlay(overlay) => &mut overlay.file,
+        }
+    }
+
+    /// What it is read for, in a word.
+    pub fn role(&self) -> &'static str {
+        match self {
+            Self::Albedo(_) => "albedo",
+            Self::Normal(_) => "normal",
+            Self::NormalFromHeight(..) => "normal from height",
+            Self::Roughness(_) => "roughness",
+            Self::Outline(_) => "outline",
+            Self::Overlay(_) => "overlay",
+        }
+    }
+
+    /// Bytes on the GPU, mipmaps included, as the loader stores it.
+    pub fn gpu_bytes(&self) -> u64 {
+        let [width, height] = self.file().size.map(u64::from);
+        let texel = match self {
+            Self::Albedo(_) | Self::Overlay(_) => 8,
+            Self::Normal(_) | Self::NormalFromHeight(..) => 4,
+            Self::Roughness(_) => 2,
+            Self::Outline(_) => 1,
+        };
+        width * height * texel * 4 / 3
+    }
+}
+
+/// What one side of a scene requires.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SideNeeds {
+    pub side: SideName,
+    pub terms: Terms,
+    /// In the order of the shader's bindings; overlays last, from the lowest.
+    pub maps: Vec<MapUse>,
+}
+
+/// What a scene requires.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Needs {
+    /// The scene's own side first.
+    pub sides: Vec<SideNeeds>,
+    /// Why each thing is, or is not, required: sentences for the curator.
+    pub reasons: Vec<String>,
+}
+
+impl Needs {
+    /// What `scene` of `exhibit` requires at `tier`. `both_sides` adds the hidden side, for a
+    /// sheet that somebody is turning.
+    pub fn of(exhibit: &Exhibit, scene: &Scene, tier: Tier, both_sides: bool) -> Self {
+        let drawing = &exhibit.drawings[scene.drawing];
+        let mut reasons = Vec::new();
+        let curved = drawing.surface != Surface::Flat;
+        let mut names = vec![scene.side];
+        if both_sides {
+            names.push(scene.side.other());
+            reasons.push("both sides: the sheet is being turned".into());
+        } else if curved && scene.camera.tilt.0 >= BOTH_SIDES_TILT_DEG {
+            names.push(scene.side.other());
+            reasons.push(format!(
+                "both sides: a curved sheet seen from {}° can show its other side",
+                scene.camera.tilt.0
+            ));
+        }
+        let sides = names
+            .into_iter()
+            .map(|side| side_needs(exhibit, scene, drawing, side, tier, &mut reasons))
+            .collect();
+        Self { sides, reasons }
+    }
+
+    /// Bytes of all maps on the GPU.
+    pub fn gpu_bytes(&self) -> u64 {
+        self.sides
+            .iter()
+            .flat_map(|side| &side.maps)
+            .map(MapUse::gpu_bytes)
+            .sum()
+    }
+}
+
+fn side_needs(
+    exhibit: &Exhibit,
+    scene: &Scene,
+    drawing: &Drawing,
+    name: SideName,
+    tier: Tier,
+    reasons: &mut Vec<String>,
+) -> SideNeeds {
+    let mut say = |text: String| reasons.push(format!("{}: {text}", name.word()));
+    let mut maps = Vec::new();
+    let side = drawing.side_in_state(name, scene.state);
+    let mut terms = Terms {
+        tier,
+        curved: drawing.surface != Surface::Flat,
+        ..Terms::default()
+    };
+
+    for &lamp in &scene.lamps {
+        match exhibit.lamps[lamp].kind {
+            LampKind::Rectangle { .. } => terms.area_lamps = true,
+            LampKind::Distant { .. } | LampKind::Point { .. } | LampKind::Spot { .. } => {
+                terms.punctual_lamps = true;
+            }
+            LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => {}
+        }
+    }
+    let directional = terms.area_lamps || terms.punctual_lamps;
+    terms.ambient = scene.ambient.illuminance.0 > 0.0;
+    terms.specular = tier != Tier::Lambert && drawing.paper.specular > 0.0;
+
+    match &side {
+        None => say("no maps, it is bare paper".into()),
+        Some(side) => {
+            say(format!("albedo from {}", side.albedo.file.path.display()));
+            maps.push(MapUse::Albedo(side.albedo.clone()));
+            relief(side, directional, &mut terms, &mut maps, &mut say);
+            if let Some(roughness) = &side.roughness {
+                if terms.specular {
+                    say("roughness map, for the specular lobe".into());
+                    terms.roughness_map = true;
+                    maps.push(MapUse::Roughness(roughness.clone()));
+                } else {
+                    say("no roughness map: nothing is specular".into());
+                }
+            }
+        }
+    }
+    if let Some(outline) = &drawing.outline {
+        say("outline map, for edges, losses and holes".into());
+        terms.outline = true;
+        let mut outline = outline.clone();
+        outline.uv_from_side *= drawing.recto_from(name);
+        maps.push(MapUse::Outline(outline));
+    }
+    terms.edge = !inside_sheet(scene, drawing);
+    if name == scene.side {
+        for &(overlay, opacity) in &scene.overlays {
+            if opacity > 0.0 {
+                let overlay = &drawing.overlays[overlay];
+                say(format!(
+                    "overlay \"{}\" at {:.0}%",
+                    overlay.id,
+                    opacity * 100.0
+                ));
+                terms.overlays += 1;
+                maps.push(MapUse::Overlay(overlay.clone()));
+            }
+        }
+    }
+    let mut of_side = maps.iter().filter(|map| !matches!(map, MapUse::Overlay(_)));
+    let first = of_side.next().map(|map| map.file().uv_from_side);
+    terms.shared_uv = of_side.all(|map| Some(map.file().uv_from_side) == first);
+    if terms.area_lamps && tier == Tier::Draft {
+        say("rectangle lamps as points: the draft tier".into());
+    }
+    SideNeeds {
+        side: name,
+        terms,
+        maps,
+    }
+}
+
+/// The mesostructure, from a normal map or from the slopes of a height map.
+fn relief(
+    side: &Side,
+    directional: bool,
+    terms: &mut Terms,
+    maps: &mut Vec<MapUse>,
+    say: &mut impl FnMut(String),
+) {
+    let map = match (&side.normal, &side.height) {
+        (Some(normal), _) => MapUse::Normal(normal.clone()),
+        (None, Some(height)) => MapUse::NormalFromHeight(height.clone(), height.file.extent_mm()),
+        (None, None) => return,
+    };
+    if directional {
+        say(format!(
+            "{} map, for the relief in directed light",
+            map.role()
+        ));
+        terms.normal_map = true;
+        maps.push(map);
+    } else {
+        say("no relief: all light is even".into());
+    }
+}
+
+/// Whether the picture shows nothing of the sheet's edge: looking straight down, within it.
+fn inside_sheet(scene: &Scene, drawing: &Drawing) -> bool {
+    let camera = &scene.camera;
+    // The picture's height is not known here; no display is taller than it is wide by more.
+    let reach = camera.width_mm * 0.5 * 2f64.sqrt() * 2.0;
+    let margin = (camera.centre_mm)
+        .min(drawing.size_mm - camera.centre_mm)
+        .min_element();
+    camera.tilt.0 == 0.0 && margin > reach
+}

@@ -1,0 +1,227 @@
+//! The one material: its bindings, and one pipeline for each distinct need.
+
+use bevy::{
+    ecs::system::{SystemParamItem, lifetimeless::SRes},
+    mesh::MeshVertexBufferLayoutRef,
+    pbr::{MaterialPipeline, MaterialPipelineKey},
+    prelude::*,
+    render::{
+        render_asset::RenderAssets,
+        render_resource::{
+            AsBindGroup, AsBindGroupError, BindGroupLayout, BindGroupLayoutEntry, BindingResources,
+            BufferInitDescriptor, BufferUsages, Face, OwnedBindingResource,
+            RenderPipelineDescriptor, SamplerBindingType, ShaderStages,
+            SpecializedMeshPipelineError, TextureSampleType, TextureViewDimension,
+            UnpreparedBindGroup,
+            binding_types::{sampler, texture_2d, uniform_buffer},
+            encase::UniformBuffer,
+        },
+        renderer::RenderDevice,
+        texture::{FallbackImage, GpuImage},
+    },
+    shader::{ShaderDefVal, ShaderRef},
+};
+
+use super::uniform::PaperUniform;
+use crate::{manifest::exhibit::MAX_OVERLAYS, needs::Terms, optics::tier::Tier};
+
+/// Binding of the first overlay.
+const OVERLAY_BINDING: u32 = 16;
+
+/// Maps on the GPU; what a side does not need is `None` and absent from its shader.
+#[derive(Clone, Debug, Default)]
+pub struct PaperMaps {
+    pub albedo: Option<Handle<Image>>,
+    pub normal: Option<Handle<Image>>,
+    pub roughness: Option<Handle<Image>>,
+    pub outline: Option<Handle<Image>>,
+    /// The tabulated interface, see [`super::upload::interface_image`].
+    pub interface: Option<Handle<Image>>,
+    pub overlays: Vec<Handle<Image>>,
+}
+
+/// One side of a sheet.
+#[derive(Asset, TypePath, Clone, Debug)]
+pub struct PaperMaterial {
+    pub paper: PaperUniform,
+    pub terms: Terms,
+    pub maps: PaperMaps,
+    /// Half an 8-bit step of noise against banding, for windows; files stay exact.
+    pub dither: bool,
+}
+
+/// What the pipeline is specialised for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PaperKey {
+    terms: Terms,
+    albedo_map: bool,
+    dither: bool,
+}
+
+impl PaperMaterial {
+    /// Binding and image of every texture in the layout.
+    fn textures(&self) -> impl Iterator<Item = (u32, Option<&Handle<Image>>)> {
+        let maps = &self.maps;
+        let fixed = [
+            &maps.albedo,
+            &maps.normal,
+            &maps.roughness,
+            &maps.outline,
+            &maps.interface,
+        ];
+        let overlays = (0..MAX_OVERLAYS).map(|i| maps.overlays.get(i));
+        (2..)
+            .zip(fixed.map(Option::as_ref))
+            .chain((OVERLAY_BINDING..).zip(overlays))
+    }
+}
+
+impl AsBindGroup for PaperMaterial {
+    type Data = PaperKey;
+    type Param = (SRes<RenderAssets<GpuImage>>, SRes<FallbackImage>);
+
+    fn label() -> &'static str {
+        "paper"
+    }
+
+    fn bind_group_data(&self) -> PaperKey {
+        PaperKey {
+            terms: self.terms,
+            albedo_map: self.maps.albedo.is_some(),
+            dither: self.dither,
+        }
+    }
+
+    fn unprepared_bind_group(
+        &self,
+        _: &BindGroupLayout,
+        device: &RenderDevice,
+        (images, fallback): &mut SystemParamItem<'_, '_, Self::Param>,
+        _: bool,
+    ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
+        let mut uniform = UniformBuffer::new(Vec::new());
+        if let Err(error) = uniform.write(&self.paper) {
+            // The buffer is a Vec that grows; there is nothing to retry with.
+            error!("the sheet's constants could not be written: {error}");
+            return Err(AsBindGroupError::RetryNextUpdate);
+        }
+        let buffer = device.create_buffer_with_data(&BufferInitDescriptor {
+            label: Some("paper"),
+            contents: uniform.as_ref(),
+            usage: BufferUsages::UNIFORM,
+        });
+        let mut map_sampler = &fallback.d2.sampler;
+        let mut bindings = vec![(0, OwnedBindingResource::Buffer(buffer))];
+        for (binding, handle) in self.textures() {
+            let image = match handle {
+                None => &fallback.d2,
+                Some(handle) => {
+                    let image = images
+                        .get(handle)
+                        .ok_or(AsBindGroupError::RetryNextUpdate)?;
+                    if binding != 6 {
+                        map_sampler = &image.sampler;
+                    }
+                    image
+                }
+            };
+            let view = image.texture_view.clone();
+            bindings.push((
+                binding,
+                OwnedBindingResource::TextureView(TextureViewDimension::D2, view),
+            ));
+        }
+        let filtering = SamplerBindingType::Filtering;
+        bindings.push((
+            1,
+            OwnedBindingResource::Sampler(filtering, map_sampler.clone()),
+        ));
+        Ok(UnpreparedBindGroup {
+            bindings: BindingResources(bindings),
+        })
+    }
+
+    fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
+        let stages = ShaderStages::VERTEX_FRAGMENT;
+        let map = texture_2d(TextureSampleType::Float { filterable: true });
+        let table = texture_2d(TextureSampleType::Float { filterable: false });
+        let mut entries = vec![
+            uniform_buffer::<PaperUniform>(false).build(0, stages),
+            sampler(SamplerBindingType::Filtering).build(1, ShaderStages::FRAGMENT),
+            table.build(6, ShaderStages::FRAGMENT),
+        ];
+        let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
+        entries.extend(
+            (2..6)
+                .chain(overlays)
+                .map(|i| map.build(i, ShaderStages::FRAGMENT)),
+        );
+        entries
+    }
+}
+
+impl Material for PaperMaterial {
+    fn vertex_shader() -> ShaderRef {
+        "embedded://recto/paper_material.wgsl".into()
+    }
+
+    fn fragment_shader() -> ShaderRef {
+        "embedded://recto/paper_material.wgsl".into()
+    }
+
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+
+    fn specialize(
+        _: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        layout: &MeshVertexBufferLayoutRef,
+        key: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        let PaperKey {
+            terms,
+            albedo_map,
+            dither,
+        } = key.bind_group_data;
+        let defs: Vec<ShaderDefVal> = [
+            ("TIER_LAMBERT", terms.tier == Tier::Lambert),
+            ("TIER_DRAFT", terms.tier == Tier::Draft),
+            ("TIER_GALLERY", terms.tier == Tier::Gallery),
+            ("ALBEDO_MAP", albedo_map),
+            ("CURVED", terms.curved),
+            ("NORMAL_MAP", terms.normal_map),
+            ("ROUGHNESS_MAP", terms.roughness_map),
+            ("OUTLINE", terms.outline),
+            ("EDGE", terms.edge),
+            ("SHARED_UV", terms.shared_uv),
+            ("AMBIENT", terms.ambient),
+            ("AREA_LAMPS", terms.area_lamps),
+            ("OVERLAYS", terms.overlays > 0),
+            ("DITHER", dither),
+        ]
+        .into_iter()
+        .filter(|(_, needed)| *needed)
+        .map(|(name, _)| name.into())
+        .collect();
+        let mut attributes = vec![
+            Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
+            Mesh::ATTRIBUTE_UV_0.at_shader_location(1),
+        ];
+        if terms.curved {
+            attributes.push(Mesh::ATTRIBUTE_NORMAL.at_shader_location(2));
+            attributes.push(Mesh::ATTRIBUTE_TANGENT.at_shader_location(3));
+        }
+        descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
+        descriptor.vertex.shader_defs.extend(defs.iter().cloned());
+        if let Some(fragment) = &mut descriptor.fragment {
+            fragment.shader_defs.extend(defs);
+        }
+        descriptor.primitive.cull_mode = Some(Face::Back);
+        Ok(())
+    }
+}

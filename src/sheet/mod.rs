@@ -1,0 +1,33 @@
+//! The sheet in Bevy: its mesh, its material, and the one place where f64 becomes f32.
+
+pub mod material;
+pub mod mesh;
+pub mod uniform;
+pub mod upload;
+
+use std::path::Path;
+
+use bevy::{asset::io::embedded::EmbeddedAssetRegistry, prelude::*};
+
+pub use material::{PaperMaps, PaperMaterial};
+
+/// The physics, as the material imports it and the tests run it.
+pub const PAPER_BSDF: &str = include_str!("../../shaders/paper_bsdf.wgsl");
+/// The glue around it.
+pub const PAPER_MATERIAL: &str = include_str!("../../shaders/paper_material.wgsl");
+
+/// Registers the shaders and the sheet's material.
+pub struct SheetPlugin;
+
+impl Plugin for SheetPlugin {
+    fn build(&self, app: &mut App) {
+        let registry = app.world_mut().resource_mut::<EmbeddedAssetRegistry>();
+        for (path, text) in [
+            ("recto/paper_bsdf.wgsl", PAPER_BSDF),
+            ("recto/paper_material.wgsl", PAPER_MATERIAL),
+        ] {
+            registry.insert_asset(path.into(), Path::new(path), text.as_bytes());
+        }
+        app.add_plugins(MaterialPlugin::<PaperMaterial>::default());
+    }
+}

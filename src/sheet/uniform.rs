@@ -1,0 +1,183 @@
+//! The only narrowing from f64 to f32: a side's constants, lamps and places as the shader
+//! reads them. Names and order are those of `paper_material.wgsl` and `paper_bsdf.wgsl`.
+
+use bevy::render::render_resource::ShaderType;
+use glam::{DAffine2, DMat4, DQuat, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
+
+use crate::{
+    manifest::exhibit::{MAX_LAMPS, MAX_OVERLAYS},
+    maps::Coding,
+    optics::lamp::{DISTANCE2_MIN_MM2, Light, Shape},
+};
+
+/// Cosine below every cosine: a lamp without a beam shines fully everywhere.
+const NO_BEAM: f32 = -2.0;
+
+/// Twin of `Light`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct LightUniform {
+    pub place: Vec3,
+    pub near: f32,
+    pub amount: Vec3,
+    pub grid: u32,
+    pub axis: Vec3,
+    pub beam_scale: f32,
+    pub half_edge_u: Vec3,
+    pub cos_falloff: f32,
+    pub half_edge_v: Vec3,
+    pub distance_squared_min: f32,
+}
+
+impl LightUniform {
+    /// Narrows `light`. With `as_points`, a rectangle becomes a point in its middle that
+    /// shines like a Lambertian facet (the draft tier).
+    pub fn new(light: &Light, as_points: bool) -> Self {
+        let amount = light.amount.as_vec3();
+        let near = Self {
+            near: 1.0,
+            amount,
+            // Any scale: the cosine is always at least 1 above NO_BEAM.
+            beam_scale: 1.0,
+            cos_falloff: NO_BEAM,
+            distance_squared_min: DISTANCE2_MIN_MM2 as f32,
+            ..Self::default()
+        };
+        match light.shape {
+            Shape::Distant { towards } => Self {
+                place: towards.as_vec3(),
+                near: 0.0,
+                distance_squared_min: 1e-6,
+                ..near
+            },
+            Shape::Point { position } => Self {
+                place: position.as_vec3(),
+                ..near
+            },
+            Shape::Spot {
+                position,
+                axis,
+                cos_hotspot,
+                cos_falloff,
+            } => Self {
+                place: position.as_vec3(),
+                axis: axis.as_vec3(),
+                beam_scale: (1.0 / (cos_hotspot - cos_falloff).max(1e-6)) as f32,
+                cos_falloff: cos_falloff as f32,
+                ..near
+            },
+            Shape::Rectangle { centre, axis, .. } if as_points => Self {
+                place: centre.as_vec3(),
+                axis: axis.as_vec3(),
+                cos_falloff: 0.0,
+                ..near
+            },
+            Shape::Rectangle {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                grid,
+            } => Self {
+                place: centre.as_vec3(),
+                axis: axis.as_vec3(),
+                grid,
+                half_edge_u: half_u.as_vec3(),
+                half_edge_v: half_v.as_vec3(),
+                ..near
+            },
+        }
+    }
+}
+
+/// Twin of `MapPlace`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct MapPlace {
+    pub row_u: Vec3,
+    pub opacity: f32,
+    pub row_v: Vec3,
+    pub lit: f32,
+}
+
+impl MapPlace {
+    /// From side frame (mm) → texture coordinates.
+    pub fn new(uv_from_side: DAffine2) -> Self {
+        let (m, t) = (uv_from_side.matrix2, uv_from_side.translation);
+        Self {
+            row_u: DVec3::new(m.x_axis.x, m.y_axis.x, t.x).as_vec3(),
+            row_v: DVec3::new(m.x_axis.y, m.y_axis.y, t.y).as_vec3(),
+            ..Self::default()
+        }
+    }
+
+    /// The same place for an overlay.
+    pub fn overlay(uv_from_side: DAffine2, opacity: f64, lit: bool) -> Self {
+        Self {
+            opacity: opacity as f32,
+            lit: f32::from(u8::from(lit)),
+            ..Self::new(uv_from_side)
+        }
+    }
+}
+
+/// Twin of `Paper`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct PaperUniform {
+    pub clip_from_local: Mat4,
+    pub eye: Vec4,
+    pub ambient: Vec3,
+    pub lamp_count: u32,
+    pub table: Vec3,
+    pub alpha: f32,
+    pub bare: Vec3,
+    pub specular: f32,
+    pub size: Vec2,
+    pub eta: f32,
+    pub f_normal: f32,
+    pub normal_axes: Vec4,
+    pub normal_offset: Vec2,
+    pub sign_gain: f32,
+    pub overlay_count: u32,
+    pub albedo_place: MapPlace,
+    pub normal_place: MapPlace,
+    pub roughness_place: MapPlace,
+    pub outline_place: MapPlace,
+    pub lights: [LightUniform; MAX_LAMPS],
+    pub overlays: [MapPlace; MAX_OVERLAYS],
+}
+
+impl PaperUniform {
+    /// Sets eye and projection, given in the table frame, for a side whose local frame is
+    /// `table_from_local`.
+    pub fn set_eye(&mut self, clip_from_table: DMat4, eye: DVec4, table_from_local: DMat4) {
+        self.clip_from_local = (clip_from_table * table_from_local).as_mat4();
+        self.eye = (table_from_local.inverse() * eye).as_vec4();
+    }
+
+    /// Sets the lamps, given in the table frame.
+    pub fn set_lights(
+        &mut self,
+        lights: &[Light],
+        ambient: DVec3,
+        local_from_table: DQuat,
+        as_points: bool,
+    ) {
+        self.lamp_count = lights.len().min(MAX_LAMPS) as u32;
+        for (slot, light) in self.lights.iter_mut().zip(lights) {
+            *slot = LightUniform::new(&light.rotated(local_from_table), as_points);
+        }
+        self.ambient = ambient.as_vec3();
+    }
+
+    /// Sets the place of the normal map, and how its texels are coded.
+    pub fn set_normal_place(&mut self, uv_from_side: DAffine2, coding: Coding) {
+        self.normal_place = MapPlace::new(uv_from_side);
+        // Directions on the side that the picture's x (right) and y (up) axes point to.
+        let side_from_uv = uv_from_side.matrix2.inverse();
+        let x = side_from_uv.x_axis.normalize();
+        let y = -side_from_uv.y_axis.normalize();
+        // The side frame counts y downwards, the local frame upwards.
+        let (x, y) = (DVec2::new(x.x, -x.y), DVec2::new(y.x, -y.y));
+        self.normal_axes = DVec4::new(x.x, x.y, y.x, y.y).as_vec4() * coding.scale as f32;
+        self.normal_offset = ((x + y) * coding.offset).as_vec2();
+    }
+}

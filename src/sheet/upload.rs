@@ -1,0 +1,102 @@
+//! Maps and tables as textures.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    image::{Image, ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+};
+
+use crate::{
+    maps::{Pyramid, Texels},
+    optics::table::{ALPHA_NODES, InterfaceTable, MU_NODES},
+};
+
+/// A map with its mip chain, filtered linearly; `anisotropy` 1 samples exactly as the
+/// closed-form tests expect, 16 keeps tilted sheets sharp.
+pub fn map_image(pyramid: Pyramid, anisotropy: u16) -> Image {
+    let (width, height) = (pyramid.levels[0].width, pyramid.levels[0].height);
+    let format = format(&pyramid);
+    let mip_level_count = pyramid.levels.len() as u32;
+    let mut data = Vec::new();
+    for level in pyramid.levels {
+        match level.texels {
+            Texels::Unorm8(values) => data.extend(values),
+            Texels::Unorm16(values) => data.extend(values.iter().flat_map(|v| v.to_le_bytes())),
+            Texels::Half(values) => data.extend(values.iter().flat_map(|v| v.to_le_bytes())),
+        }
+    }
+    let mut image = texture(width, height, format);
+    image.texture_descriptor.mip_level_count = mip_level_count;
+    image.data = Some(data);
+    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+        label: Some("map".into()),
+        address_mode_u: ImageAddressMode::ClampToEdge,
+        address_mode_v: ImageAddressMode::ClampToEdge,
+        mag_filter: ImageFilterMode::Linear,
+        min_filter: ImageFilterMode::Linear,
+        mipmap_filter: ImageFilterMode::Linear,
+        anisotropy_clamp: anisotropy,
+        ..ImageSamplerDescriptor::default()
+    });
+    image
+}
+
+fn format(pyramid: &Pyramid) -> TextureFormat {
+    match (&pyramid.levels[0].texels, pyramid.channels) {
+        (Texels::Unorm8(_), 1) => TextureFormat::R8Unorm,
+        (Texels::Unorm8(_), 2) => TextureFormat::Rg8Unorm,
+        (Texels::Unorm8(_), _) => TextureFormat::Rgba8Unorm,
+        (Texels::Unorm16(_), 1) => TextureFormat::R16Unorm,
+        (Texels::Unorm16(_), 2) => TextureFormat::Rg16Unorm,
+        (Texels::Unorm16(_), _) => TextureFormat::Rgba16Unorm,
+        (Texels::Half(_), 1) => TextureFormat::R16Float,
+        (Texels::Half(_), 2) => TextureFormat::Rg16Float,
+        (Texels::Half(_), _) => TextureFormat::Rgba16Float,
+    }
+}
+
+/// The nodes of an interface, one row for each roughness and its means in the last column;
+/// with `alpha`, one row at that roughness.
+pub fn interface_image(table: &InterfaceTable, alpha: Option<f64>) -> Image {
+    let alphas: Vec<f64> = match alpha {
+        Some(alpha) => vec![alpha],
+        None => (0..ALPHA_NODES)
+            .map(|j| j as f64 / (ALPHA_NODES - 1) as f64)
+            .collect(),
+    };
+    let mut values: Vec<f32> = Vec::new();
+    for &alpha in &alphas {
+        for i in 0..MU_NODES {
+            let node = table.at(crate::optics::table::node_mu(i), alpha);
+            values.extend([node.t as f32, node.lost as f32, 0.0, 0.0]);
+        }
+        let mean = table.mean_at(alpha);
+        values.extend([
+            mean.compensation as f32,
+            mean.t_mean as f32,
+            mean.capture as f32,
+            0.0,
+        ]);
+    }
+    let mut image = texture(
+        MU_NODES as u32 + 1,
+        alphas.len() as u32,
+        TextureFormat::Rgba32Float,
+    );
+    image.data = Some(values.iter().flat_map(|v| v.to_le_bytes()).collect());
+    image
+}
+
+fn texture(width: u32, height: u32, format: TextureFormat) -> Image {
+    let size = Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    };
+    Image::new_uninit(
+        size,
+        TextureDimension::D2,
+        format,
+        RenderAssetUsages::RENDER_WORLD,
+    )
+}

@@ -1,0 +1,342 @@
+//! Pictures without a window: the stage rendered into a float image and read back.
+
+use std::sync::{Arc, Mutex};
+
+use bevy::{
+    app::{AppLabel, PluginsState, SubApps},
+    asset::RenderAssetUsages,
+    camera::RenderTarget,
+    core_pipeline::tonemapping::Tonemapping,
+    light::cluster::{ClusterConfig, GlobalClusterSettings},
+    prelude::*,
+    render::{
+        RenderApp, RenderPlugin,
+        pipelined_rendering::PipelinedRenderingPlugin,
+        render_resource::{
+            CachedPipelineState, Extent3d, PipelineCache, PollType, TextureDimension,
+            TextureFormat, TextureUsages,
+        },
+        renderer::RenderDevice,
+        view::screenshot::{Screenshot, ScreenshotCaptured},
+    },
+    window::ExitCondition,
+    winit::WinitPlugin,
+};
+
+use crate::{
+    device::{self, NoDevice},
+    stage::{Arranged, Library, Shown, StagePlugin, TABLE, legend::TextCamera},
+};
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum ShotError {
+    #[error(transparent)]
+    NoDevice(#[from] NoDevice),
+    /// Maps that cannot be decoded, a line each.
+    #[error("{}", .0.join("\n"))]
+    Maps(Vec<String>),
+    /// A fault of Recto's own shaders or of the driver.
+    #[error("the graphics device refused: {0}")]
+    Device(String),
+}
+
+/// A rendered picture.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    pub width: u32,
+    pub height: u32,
+    /// Linear sRGB relative to a perfect diffuser, rows from the top.
+    pub pixels: Vec<[f32; 3]>,
+    /// Legend to lay over it: premultiplied linear RGBA, empty where there is none.
+    pub legend: Vec<[f32; 4]>,
+}
+
+/// How many frames a settled stage may take to reach the picture and back.
+const PATIENCE_FRAMES: u32 = 64;
+/// Frames between settling and capture: maps reach the GPU in the first, materials in the
+/// second.
+const SETTLING_FRAMES: u32 = 3;
+
+/// An app without a window that takes one picture after another.
+pub struct Darkroom {
+    apps: SubApps,
+    camera: Entity,
+    size: UVec2,
+    target: Handle<Image>,
+    text_camera: Entity,
+    text_target: Handle<Image>,
+}
+
+impl Darkroom {
+    /// Starts the renderer.
+    ///
+    /// # Errors
+    /// [`ShotError::NoDevice`] without a graphics driver.
+    pub fn new(anisotropy: u16) -> Result<Self, ShotError> {
+        Self::with(anisotropy, |_| {})
+    }
+
+    /// The same with more plugins, which benchmarks need.
+    ///
+    /// # Errors
+    /// [`ShotError::NoDevice`] without a graphics driver.
+    pub fn with(anisotropy: u16, add: impl FnOnce(&mut App)) -> Result<Self, ShotError> {
+        device::probe()?;
+        let mut app = App::new();
+        app.add_plugins(
+            DefaultPlugins
+                .set(WindowPlugin {
+                    primary_window: None,
+                    exit_condition: ExitCondition::DontExit,
+                    ..default()
+                })
+                .set(RenderPlugin {
+                    render_creation: device::render_creation(),
+                    synchronous_pipeline_compilation: true,
+                    ..default()
+                })
+                .disable::<WinitPlugin>()
+                .disable::<PipelinedRenderingPlugin>()
+                .disable::<bevy::log::LogPlugin>(),
+        )
+        .add_plugins(StagePlugin {
+            dither: false,
+            anisotropy,
+        })
+        .add_systems(Startup, without_clusters);
+        add(&mut app);
+        while app.plugins_state() == PluginsState::Adding {
+            bevy::tasks::tick_global_task_pools_on_main_thread();
+        }
+        app.finish();
+        app.cleanup();
+        let mut apps = std::mem::take(app.sub_apps_mut());
+        let world = apps.main.world_mut();
+        let size = UVec2::ONE;
+        let (target, text_target) = (
+            add_target(world, size, PICTURE),
+            add_target(world, size, TEXT),
+        );
+        let camera = world.spawn((camera_bundle(), target_of(&target))).id();
+        let text_camera = world
+            .spawn((
+                Camera2d,
+                Camera {
+                    order: 1,
+                    clear_color: ClearColorConfig::Custom(Color::NONE),
+                    is_active: false,
+                    ..default()
+                },
+                target_of(&text_target),
+                TextCamera { height: 1.0 },
+                Msaa::Off,
+                Tonemapping::None,
+            ))
+            .id();
+        Ok(Self {
+            apps,
+            camera,
+            size,
+            target,
+            text_camera,
+            text_target,
+        })
+    }
+
+    /// The main world, for benchmarks and tests.
+    pub fn world(&mut self) -> &mut World {
+        self.apps.main.world_mut()
+    }
+
+    /// Runs one frame to its end.
+    ///
+    /// # Errors
+    /// [`ShotError::Device`] when the device is lost.
+    pub fn frame(&mut self) -> Result<(), ShotError> {
+        self.apps.update();
+        let device = self.apps.main.world().resource::<RenderDevice>();
+        device
+            .wgpu_device()
+            .poll(PollType::Wait {
+                submission_index: None,
+                timeout: None,
+            })
+            .map(|_| ())
+            .map_err(|error| ShotError::Device(error.to_string()))
+    }
+
+    /// Arranges `shown` and waits until everything it needs is on the GPU.
+    ///
+    /// # Errors
+    /// [`ShotError::Maps`] with every map that cannot be decoded, or [`ShotError::Device`].
+    pub fn arrange(&mut self, shown: Shown, size: [u32; 2]) -> Result<(), ShotError> {
+        self.resize(UVec2::from_array(size));
+        let has_legend = shown
+            .scene
+            .overlays
+            .iter()
+            .any(|(_, opacity)| *opacity > 0.0);
+        let text_camera = self.text_camera;
+        if let Some(mut camera) = self.world().get_mut::<Camera>(text_camera) {
+            camera.is_active = has_legend;
+        }
+        self.world().insert_resource(shown);
+        loop {
+            self.frame()?;
+            let world = self.apps.main.world();
+            let library = world.resource::<Library>();
+            if !library.faults.is_empty() && !library.is_busy() {
+                return Err(ShotError::Maps(library.faults.clone()));
+            }
+            if world.resource::<Arranged>().is_settled() {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        for _ in 0..SETTLING_FRAMES {
+            self.frame()?;
+        }
+        self.check_pipelines()
+    }
+
+    /// One picture of `shown`, with a legend if overlays lie on it.
+    ///
+    /// # Errors
+    /// As [`Darkroom::arrange`].
+    pub fn take(&mut self, shown: Shown, size: [u32; 2]) -> Result<Picture, ShotError> {
+        let has_legend = shown
+            .scene
+            .overlays
+            .iter()
+            .any(|(_, opacity)| *opacity > 0.0);
+        self.arrange(shown, size)?;
+        let target = self.target.clone();
+        let bytes = self.capture(target)?;
+        let pixels = bytes
+            .chunks_exact(16)
+            .map(|texel| {
+                std::array::from_fn(|c| {
+                    let at = 4 * c;
+                    f32::from_le_bytes([texel[at], texel[at + 1], texel[at + 2], texel[at + 3]])
+                })
+            })
+            .collect();
+        let legend = if has_legend {
+            let target = self.text_target.clone();
+            let bytes = self.capture(target)?;
+            let linear = |byte: u8| crate::colour::srgb_decode(f64::from(byte) / 255.0);
+            bytes
+                .chunks_exact(4)
+                .map(|texel| {
+                    let [r, g, b] = [texel[0], texel[1], texel[2]].map(|c| linear(c) as f32);
+                    [r, g, b, f32::from(texel[3]) / 255.0]
+                })
+                .collect()
+        } else {
+            Vec::new()
+        };
+        Ok(Picture {
+            width: size[0],
+            height: size[1],
+            pixels,
+            legend,
+        })
+    }
+
+    fn resize(&mut self, size: UVec2) {
+        if size == self.size {
+            return;
+        }
+        self.size = size;
+        let world = self.apps.main.world_mut();
+        self.target = add_target(world, size, PICTURE);
+        self.text_target = add_target(world, size, TEXT);
+        world
+            .entity_mut(self.camera)
+            .insert(target_of(&self.target));
+        world.entity_mut(self.text_camera).insert((
+            target_of(&self.text_target),
+            TextCamera {
+                height: size.y as f32,
+            },
+        ));
+    }
+
+    fn capture(&mut self, target: Handle<Image>) -> Result<Vec<u8>, ShotError> {
+        let captured = Arc::new(Mutex::new(None));
+        let slot = captured.clone();
+        self.world().spawn(Screenshot::image(target)).observe(
+            move |event: On<ScreenshotCaptured>| {
+                if let Ok(mut slot) = slot.lock() {
+                    *slot = event.image.data.clone();
+                }
+            },
+        );
+        for _ in 0..PATIENCE_FRAMES {
+            self.frame()?;
+            if let Some(bytes) = captured.lock().ok().and_then(|mut slot| slot.take()) {
+                return Ok(bytes);
+            }
+        }
+        Err(ShotError::Device(
+            "the picture did not come back from the device".into(),
+        ))
+    }
+
+    /// A pipeline that failed to compile draws nothing and says so only here.
+    fn check_pipelines(&self) -> Result<(), ShotError> {
+        let Some(render) = self.apps.sub_apps.get(&RenderApp.intern()) else {
+            return Err(ShotError::Device("there is no renderer".into()));
+        };
+        for pipeline in render.world().resource::<PipelineCache>().pipelines() {
+            if let CachedPipelineState::Err(error) = &pipeline.state {
+                return Err(ShotError::Device(error.to_string()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Bevy's clustered lights are not used; without this they cost a pass a frame.
+pub fn without_clusters(mut settings: ResMut<GlobalClusterSettings>) {
+    settings.gpu_clustering = None;
+}
+
+/// The camera that draws the sheet. Its projection is not used: the sheet's shader has the
+/// eye's own, in f64 until it is narrowed.
+pub fn camera_bundle() -> impl Bundle {
+    (
+        Camera3d::default(),
+        Camera {
+            clear_color: ClearColorConfig::Custom(Color::linear_rgb(TABLE, TABLE, TABLE)),
+            ..default()
+        },
+        ClusterConfig::None,
+        Tonemapping::None,
+        Msaa::Off,
+    )
+}
+
+const PICTURE: TextureFormat = TextureFormat::Rgba32Float;
+const TEXT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+
+fn target_of(image: &Handle<Image>) -> RenderTarget {
+    RenderTarget::Image(image.clone().into())
+}
+
+fn add_target(world: &mut World, size: UVec2, format: TextureFormat) -> Handle<Image> {
+    let extent = Extent3d {
+        width: size.x,
+        height: size.y,
+        depth_or_array_layers: 1,
+    };
+    let mut image = Image::new_uninit(
+        extent,
+        TextureDimension::D2,
+        format,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.texture_descriptor.usage |= TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
+    world.resource_mut::<Assets<Image>>().add(image)
+}

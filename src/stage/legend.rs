@@ -1,0 +1,209 @@
+//! The legend of the overlays that lie on the sheet: on screen and in rendered pictures alike.
+
+use bevy::prelude::*;
+
+use super::{Shown, StageSet};
+use crate::{
+    colour,
+    manifest::exhibit::{Overlay, OverlayKind, Wording},
+    maps::ColourMapName,
+};
+
+/// Where a face that has more than ASCII usually lies; the first found is used.
+const FACES: [&str; 4] = [
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+    "/usr/share/fonts/TTF/DejaVuSans.ttf",
+    "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+    "/System/Library/Fonts/Helvetica.ttc",
+];
+/// Height of the text as a share of the picture's height, and its least size in pixels.
+const TEXT_SHARE: f32 = 0.02;
+const TEXT_MIN_PX: f32 = 11.0;
+/// Steps of a continuous legend's bar.
+const BAR_STEPS: u32 = 32;
+
+/// Draws the legends.
+pub struct LegendPlugin;
+
+impl Plugin for LegendPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Startup, load_face).add_systems(
+            Update,
+            draw.in_set(StageSet::Arrange)
+                .run_if(resource_exists_and_changed::<Shown>),
+        );
+    }
+}
+
+/// The face of every text.
+#[derive(Resource, Clone, Default)]
+pub struct Face(pub Handle<Font>);
+
+/// The camera that draws the texts, and the height of its picture in pixels.
+#[derive(Component)]
+pub struct TextCamera {
+    pub height: f32,
+}
+
+/// The legend's root node.
+#[derive(Component)]
+struct Legend;
+
+fn load_face(mut commands: Commands, mut fonts: ResMut<Assets<Font>>) {
+    let bytes = FACES.iter().find_map(|path| std::fs::read(path).ok());
+    let handle = bytes
+        .map(|bytes| fonts.add(Font::from_bytes(bytes)))
+        .unwrap_or_default();
+    commands.insert_resource(Face(handle));
+}
+
+/// Size of the body text for a picture of `height` pixels.
+pub fn text_size(height: f32) -> f32 {
+    (height * TEXT_SHARE).max(TEXT_MIN_PX)
+}
+
+fn draw(
+    mut commands: Commands,
+    shown: Res<Shown>,
+    face: Option<Res<Face>>,
+    cameras: Query<(Entity, &TextCamera)>,
+    drawn: Query<Entity, With<Legend>>,
+) {
+    let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
+        return;
+    };
+    for entity in &drawn {
+        commands.entity(entity).despawn();
+    }
+    let drawing = &shown.exhibit.drawings[shown.scene.drawing];
+    let overlays: Vec<(&Overlay, f64)> = shown
+        .scene
+        .overlays
+        .iter()
+        .filter(|(_, opacity)| *opacity > 0.0)
+        .map(|(index, opacity)| (&drawing.overlays[*index], *opacity))
+        .collect();
+    if overlays.is_empty() {
+        return;
+    }
+    let size = text_size(text.height);
+    let words = Words {
+        shown: &shown,
+        face: &face.0,
+        size,
+    };
+    commands
+        .spawn((
+            Legend,
+            UiTargetCamera(camera),
+            Node {
+                position_type: PositionType::Absolute,
+                right: Val::Px(size),
+                bottom: Val::Px(size),
+                padding: UiRect::all(Val::Px(size * 0.7)),
+                row_gap: Val::Px(size * 0.35),
+                flex_direction: FlexDirection::Column,
+                ..default()
+            },
+            BackgroundColor(Color::srgba(0.05, 0.05, 0.05, 0.85)),
+        ))
+        .with_children(|rows| {
+            for (overlay, opacity) in overlays {
+                rows.spawn(words.line(format!(
+                    "{} · {:.0} %",
+                    words.say(&overlay.title, &overlay.id),
+                    opacity * 100.0
+                )));
+                match &overlay.kind {
+                    OverlayKind::Categorical(entries) => {
+                        for entry in entries {
+                            rows.spawn(words.row()).with_children(|row| {
+                                row.spawn(words.swatch(entry.colour));
+                                let label = words.say(&entry.label, "");
+                                row.spawn(words.line(label));
+                            });
+                        }
+                    }
+                    OverlayKind::Continuous {
+                        colour_map,
+                        unit,
+                        range,
+                    } => {
+                        rows.spawn(words.row()).with_children(|row| {
+                            row.spawn(words.line(range[0].to_string()));
+                            row.spawn(Node::default()).with_children(|bar| {
+                                for step in 0..BAR_STEPS {
+                                    bar.spawn(words.step(*colour_map, step));
+                                }
+                            });
+                            row.spawn(words.line(format!("{} {unit}", range[1])));
+                        });
+                    }
+                    OverlayKind::Picture(_) => {}
+                }
+            }
+        });
+}
+
+/// Bundles of one legend.
+struct Words<'a> {
+    shown: &'a Shown,
+    face: &'a Handle<Font>,
+    size: f32,
+}
+
+impl Words<'_> {
+    fn say(&self, wording: &Wording, fallback: &str) -> String {
+        self.shown.text(wording).unwrap_or(fallback).to_owned()
+    }
+
+    fn line(&self, text: String) -> impl Bundle {
+        line(text, self.face, self.size)
+    }
+
+    fn row(&self) -> impl Bundle {
+        Node {
+            align_items: AlignItems::Center,
+            column_gap: Val::Px(self.size * 0.5),
+            ..default()
+        }
+    }
+
+    fn swatch(&self, [r, g, b]: [u8; 3]) -> impl Bundle {
+        let edge = Val::Px(self.size);
+        (
+            Node {
+                width: edge,
+                height: edge,
+                ..default()
+            },
+            BackgroundColor(Color::srgb_u8(r, g, b)),
+        )
+    }
+
+    fn step(&self, map: ColourMapName, step: u32) -> impl Bundle {
+        let at = (f64::from(step) + 0.5) / f64::from(BAR_STEPS);
+        let [r, g, b] = map.colour(at).map(|c| colour::srgb_encode(c) as f32);
+        (
+            Node {
+                width: Val::Px(self.size * 0.25),
+                height: Val::Px(self.size),
+                ..default()
+            },
+            BackgroundColor(Color::srgb(r, g, b)),
+        )
+    }
+}
+
+/// One line of text in the program's manner.
+pub fn line(text: String, face: &Handle<Font>, size: f32) -> impl Bundle {
+    (
+        Text::new(text),
+        TextFont {
+            font: face.clone().into(),
+            font_size: FontSize::Px(size),
+            ..default()
+        },
+        TextColor(Color::srgb(0.92, 0.91, 0.88)),
+    )
+}

@@ -1,0 +1,261 @@
+//! The maps that were asked for, decoded in the background, once each.
+
+use std::{
+    fmt,
+    sync::{Arc, Mutex, mpsc},
+};
+
+use bevy::prelude::*;
+use glam::{DAffine2, DVec2};
+
+use crate::{
+    manifest::exhibit::{HeightMap, OverlayKind, Surface},
+    maps::{self, Coding, MapError, Pyramid, normal_coding},
+    needs::MapUse,
+    optics::table::InterfaceTable,
+    sheet::{mesh::SideSurface, upload},
+};
+
+/// Called from the loader's threads when something arrived: a sleeping window must wake up.
+#[derive(Resource, Clone)]
+pub struct Waker(pub Arc<dyn Fn() + Send + Sync>);
+
+impl fmt::Debug for Waker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Waker")
+    }
+}
+
+/// What is asked of the library.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    Map(MapUse),
+    /// The macroscopic shape of a sheet of this size.
+    Surface(Surface, DVec2),
+}
+
+impl Request {
+    /// The same pixels wherever they lie on the sheet.
+    fn key(mut self) -> Self {
+        if let Self::Map(map) = &mut self {
+            map.file_mut().uv_from_side = DAffine2::IDENTITY;
+        }
+        self
+    }
+}
+
+enum Decoded {
+    Map(Pyramid),
+    Surface(SideSurface),
+}
+
+/// What the library holds.
+#[derive(Clone, Debug)]
+pub enum Held {
+    /// With the coding that applies if its values are normals.
+    Map(Handle<Image>, Coding),
+    Surface(Arc<SideSurface>),
+}
+
+enum Entry {
+    Decoding,
+    Ready(Held),
+    Faulty,
+}
+
+type Arrival = (u64, Request, Result<Decoded, MapError>);
+
+/// Everything loaded, by what it was loaded for.
+#[derive(Resource)]
+pub struct Library {
+    entries: Vec<(Request, Entry)>,
+    /// What could not be decoded, one line each.
+    pub faults: Vec<String>,
+    tables: Vec<([f64; 2], Arc<InterfaceTable>)>,
+    anisotropy: u16,
+    /// Arrivals of an earlier exhibit are dropped.
+    generation: u64,
+    sender: mpsc::Sender<Arrival>,
+    // A receiver is not Sync; only `receive` takes it, and never blocks.
+    receiver: Mutex<mpsc::Receiver<Arrival>>,
+}
+
+impl Library {
+    /// An empty library whose maps are filtered with `anisotropy` (1 to 16).
+    pub fn new(anisotropy: u16) -> Self {
+        let (sender, receiver) = mpsc::channel();
+        Self {
+            entries: Vec::new(),
+            faults: Vec::new(),
+            tables: Vec::new(),
+            anisotropy,
+            generation: 0,
+            sender,
+            receiver: Mutex::new(receiver),
+        }
+    }
+
+    /// Forgets everything: the files may have changed.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+        self.faults.clear();
+        self.generation += 1;
+    }
+
+    /// Forgets all but `wanted`.
+    pub fn keep(&mut self, wanted: &[Request]) {
+        let keys: Vec<Request> = wanted.iter().cloned().map(Request::key).collect();
+        self.entries.retain(|(key, _)| keys.contains(key));
+    }
+
+    /// What was loaded for each of `requests`, in their order, or `None` while some are still
+    /// on their way or cannot be had; those not asked for yet are started.
+    pub fn take(&mut self, requests: &[Request], waker: Option<&Waker>) -> Option<Vec<Held>> {
+        let mut held = Vec::new();
+        for request in requests {
+            let key = request.clone().key();
+            match self.entries.iter().find(|(known, _)| *known == key) {
+                Some((_, Entry::Ready(ready))) => held.push(ready.clone()),
+                Some(_) => {}
+                None => {
+                    self.entries.push((key.clone(), Entry::Decoding));
+                    self.decode(key, waker.cloned());
+                }
+            }
+        }
+        (held.len() == requests.len()).then_some(held)
+    }
+
+    /// Whether something is still being decoded.
+    pub fn is_busy(&self) -> bool {
+        self.entries
+            .iter()
+            .any(|(_, entry)| matches!(entry, Entry::Decoding))
+    }
+
+    fn decode(&self, request: Request, waker: Option<Waker>) {
+        let (sender, generation) = (self.sender.clone(), self.generation);
+        rayon::spawn(move || {
+            let decoded = match &request {
+                Request::Map(map) => load(map).map(Decoded::Map),
+                Request::Surface(surface, size) => {
+                    load_surface(surface, *size).map(Decoded::Surface)
+                }
+            };
+            // The receiver is gone when the program is closing: nobody is left to tell.
+            let _ = sender.send((generation, request, decoded));
+            if let Some(Waker(wake)) = waker {
+                wake();
+            }
+        });
+    }
+
+    /// The interface of a surface, computed once.
+    pub fn interface(&mut self, index: f64, specular: f64) -> Arc<InterfaceTable> {
+        let key = [index, specular];
+        if let Some((_, table)) = self.tables.iter().find(|(known, _)| *known == key) {
+            return table.clone();
+        }
+        let table = Arc::new(InterfaceTable::new(index, specular));
+        self.tables.push((key, table.clone()));
+        table
+    }
+}
+
+/// Takes in what was decoded.
+pub fn receive(mut library: ResMut<Library>, mut images: ResMut<Assets<Image>>) {
+    // Looking must not count as a change.
+    let silent = library.bypass_change_detection();
+    let arrivals: Vec<Arrival> = match silent.receiver.get_mut() {
+        Ok(receiver) => receiver.try_iter().collect(),
+        Err(poisoned) => poisoned.into_inner().try_iter().collect(),
+    };
+    for (generation, request, decoded) in arrivals {
+        if generation != library.generation {
+            continue;
+        }
+        let entry = match decoded {
+            Ok(Decoded::Map(pyramid)) => {
+                let coding = normal_coding(&pyramid.levels[0].texels);
+                let image = upload::map_image(pyramid, library.anisotropy);
+                Entry::Ready(Held::Map(images.add(image), coding))
+            }
+            Ok(Decoded::Surface(surface)) => Entry::Ready(Held::Surface(Arc::new(surface))),
+            Err(error) => {
+                library.faults.push(error.to_string());
+                Entry::Faulty
+            }
+        };
+        if let Some((_, slot)) = library
+            .entries
+            .iter_mut()
+            .find(|(known, _)| *known == request)
+        {
+            *slot = entry;
+        }
+    }
+}
+
+/// The one place where a map's file becomes texels.
+fn load(map: &MapUse) -> Result<Pyramid, MapError> {
+    let path = &map.file().path;
+    match map {
+        MapUse::Albedo(map) => maps::load_colour(path, map.encoding),
+        MapUse::Normal(map) => maps::load_normal(path, map.y),
+        MapUse::NormalFromHeight(map, extent_mm) => {
+            maps::load_normal_from_height(path, map.range_um, *extent_mm)
+        }
+        MapUse::Roughness(map) => maps::load_roughness(path, map.gloss),
+        MapUse::Outline(_) => maps::load_outline(path),
+        MapUse::Overlay(overlay) => match &overlay.kind {
+            OverlayKind::Categorical(legend) => {
+                let colours: Vec<[u8; 3]> = legend.iter().map(|entry| entry.colour).collect();
+                maps::load_overlay_categorical(path, &colours).map(|map| map.pyramid)
+            }
+            OverlayKind::Continuous { colour_map, .. } => {
+                maps::load_overlay_continuous(path, *colour_map)
+            }
+            OverlayKind::Picture(encoding) => maps::load_overlay_picture(path, *encoding),
+        },
+    }
+}
+
+fn load_surface(surface: &Surface, size_mm: DVec2) -> Result<SideSurface, MapError> {
+    match surface {
+        Surface::Flat => Ok(SideSurface::flat(size_mm)),
+        Surface::Height(map) => curl(map, size_mm),
+        Surface::Gltf(path) => {
+            let model = maps::surface::load_gltf(path)?;
+            let side = model.uvs.iter().map(|uv| *uv * size_mm).collect();
+            Ok(SideSurface::modelled(model.positions, side, model.indices))
+        }
+    }
+}
+
+/// A sheet that follows a macro height map, read with bilinear weights.
+fn curl(map: &HeightMap, size_mm: DVec2) -> Result<SideSurface, MapError> {
+    let pyramid = maps::load_height(&map.file.path)?;
+    let level = &pyramid.levels[0];
+    let (width, height) = (level.width as usize, level.height as usize);
+    let texel = |x: usize, y: usize| f64::from(level.texels.get(y * width + x).unwrap_or_default());
+    let [low, high] = map.range_um;
+    Ok(SideSurface::curled(size_mm, |at| {
+        let uv = map.file.uv_from_side.transform_point2(at);
+        let place = (uv * DVec2::new(width as f64, height as f64) - 0.5).clamp(
+            DVec2::ZERO,
+            DVec2::new((width - 1) as f64, (height - 1) as f64),
+        );
+        let (x, y) = (place.x as usize, place.y as usize);
+        let (x_1, y_1) = ((x + 1).min(width - 1), (y + 1).min(height - 1));
+        let part = place.fract();
+        let top = texel(x, y) + (texel(x_1, y) - texel(x, y)) * part.x;
+        let bottom = texel(x, y_1) + (texel(x_1, y_1) - texel(x, y_1)) * part.x;
+        (low + (high - low) * (top + (bottom - top) * part.y)) / 1000.0
+    }))
+}
+
+/// Whether the lamps light an overlay as they light the paper: a photograph in another band
+/// is paper, a category or a value is a sign.
+pub fn is_lit(kind: &OverlayKind) -> bool {
+    matches!(kind, OverlayKind::Picture(_))
+}

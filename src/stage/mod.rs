@@ -1,0 +1,92 @@
+//! From the scene that is shown to entities: loads what [`Needs`] asks for, spawns the sheet's
+//! sides, and keeps their lamps, eye and overlays true to [`Shown`].
+
+pub mod legend;
+pub mod library;
+mod sides;
+
+use std::sync::Arc;
+
+use bevy::prelude::*;
+use glam::DQuat;
+
+pub use library::{Library, Waker};
+pub use sides::Arranged;
+
+use crate::{
+    manifest::exhibit::{Exhibit, Scene, Wording},
+    optics::tier::Tier,
+    sheet::SheetPlugin,
+};
+
+/// Linear level, relative to a perfect diffuser, of the dark table that the sheet lies on.
+pub const TABLE: f32 = 0.012;
+
+/// What is shown now. Whoever changes it changes the picture.
+#[derive(Resource, Clone, Debug)]
+pub struct Shown {
+    pub exhibit: Arc<Exhibit>,
+    /// A scene of the exhibit, or one made from it by hand or command line.
+    pub scene: Scene,
+    pub tier: Tier,
+    /// How the sheet is turned, table frame from the recto's local frame.
+    pub pose: DQuat,
+    /// The hidden side may come into sight: the sheet is being turned.
+    pub both_sides: bool,
+    /// Width over height of the picture.
+    pub aspect: f64,
+}
+
+impl Shown {
+    /// `scene` of `exhibit` with the sheet at rest.
+    pub fn at_rest(exhibit: Arc<Exhibit>, scene: Scene, tier: Tier, aspect: f64) -> Self {
+        let pose = exhibit.drawings[scene.drawing].rest_pose(scene.side);
+        Self {
+            exhibit,
+            scene,
+            tier,
+            pose,
+            both_sides: false,
+            aspect,
+        }
+    }
+
+    /// `wording` in the scene's language, or as near to it as there is.
+    pub fn text<'w>(&self, wording: &'w Wording) -> Option<&'w str> {
+        self.exhibit
+            .text(wording, self.scene.language.as_deref().unwrap_or_default())
+    }
+}
+
+/// What happens to the stage in one frame, in this order.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub enum StageSet {
+    /// Whoever steers changes [`Shown`].
+    Steer,
+    /// Maps that arrived are taken in, and what is shown is arranged from them.
+    Arrange,
+}
+
+/// Shows [`Shown`].
+pub struct StagePlugin {
+    /// Noise against banding, for windows only.
+    pub dither: bool,
+    /// Samples along the steepest direction of a tilted map, 1 to 16.
+    pub anisotropy: u16,
+}
+
+impl Plugin for StagePlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins((SheetPlugin, legend::LegendPlugin))
+            .insert_resource(Library::new(self.anisotropy))
+            .insert_resource(Arranged::new(self.dither))
+            .configure_sets(Update, (StageSet::Steer, StageSet::Arrange).chain())
+            .add_systems(
+                Update,
+                (library::receive, sides::arrange)
+                    .chain()
+                    .in_set(StageSet::Arrange)
+                    .run_if(resource_exists::<Shown>),
+            );
+    }
+}

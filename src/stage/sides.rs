@@ -1,0 +1,279 @@
+//! The sides of the sheet as entities.
+
+use bevy::{camera::visibility::NoFrustumCulling, ecs::system::SystemParam, prelude::*};
+use glam::{DMat4, DQuat, DVec4};
+
+use super::{
+    Library, Shown, TABLE, Waker,
+    library::{Held, Request, is_lit},
+};
+use crate::{
+    manifest::{
+        exhibit::{Drawing, SideName},
+        eye::Eye,
+        lighting::Lighting,
+    },
+    maps::Coding,
+    needs::{MapUse, Needs, SideNeeds},
+    optics::{fresnel::normal_reflectance, microfacet::ALPHA_MIN, tier::Tier},
+    sheet::{
+        PaperMaps, PaperMaterial,
+        mesh::SideSurface,
+        uniform::{MapPlace, PaperUniform},
+        upload,
+    },
+};
+
+/// Albedo of bare paper, linear sRGB: the measured white of an old rag sheet is not known
+/// here, this is a usual one.
+const BARE_PAPER: [f32; 3] = [0.72, 0.67, 0.57];
+
+/// What stands on the stage.
+#[derive(Resource)]
+pub struct Arranged {
+    dither: bool,
+    needs: Option<(Needs, Request)>,
+    sides: Vec<ArrangedSide>,
+    settled: bool,
+}
+
+struct ArrangedSide {
+    name: SideName,
+    entity: Entity,
+    material: Handle<PaperMaterial>,
+    needs: SideNeeds,
+}
+
+impl Arranged {
+    pub(super) fn new(dither: bool) -> Self {
+        Self {
+            dither,
+            needs: None,
+            sides: Vec::new(),
+            settled: false,
+        }
+    }
+
+    /// Whether the stage shows what [`Shown`] says, with all its maps.
+    pub fn is_settled(&self) -> bool {
+        self.settled
+    }
+
+    /// Asks for everything to be arranged anew: the exhibit was read again.
+    pub fn reset(&mut self) {
+        self.needs = None;
+        self.settled = false;
+    }
+}
+
+/// What the stage is made from.
+#[derive(SystemParam)]
+pub struct Supplies<'w> {
+    library: ResMut<'w, Library>,
+    waker: Option<Res<'w, Waker>>,
+    images: ResMut<'w, Assets<Image>>,
+    meshes: ResMut<'w, Assets<Mesh>>,
+    materials: ResMut<'w, Assets<PaperMaterial>>,
+}
+
+/// Brings the stage in line with [`Shown`]; until all its maps are there, the last picture
+/// stays.
+pub fn arrange(
+    mut commands: Commands,
+    shown: Res<Shown>,
+    mut arranged: ResMut<Arranged>,
+    supplies: Supplies,
+) {
+    let Supplies {
+        mut library,
+        waker,
+        mut images,
+        mut meshes,
+        mut materials,
+    } = supplies;
+    if arranged.settled && !shown.is_changed() {
+        return;
+    }
+    let drawing = &shown.exhibit.drawings[shown.scene.drawing];
+    let needs = Needs::of(&shown.exhibit, &shown.scene, shown.tier, shown.both_sides);
+    let surface = Request::Surface(drawing.surface.clone(), drawing.size_mm);
+    let wanted = (needs, surface);
+    if arranged.needs.as_ref() != Some(&wanted) {
+        arranged.settled = false;
+        let (needs, surface) = &wanted;
+        let maps = needs.sides.iter().flat_map(|side| &side.maps);
+        let mut requests: Vec<Request> = maps.cloned().map(Request::Map).collect();
+        requests.push(surface.clone());
+        let Some(mut held) = library
+            .bypass_change_detection()
+            .take(&requests, waker.as_deref())
+        else {
+            return;
+        };
+        library.bypass_change_detection().keep(&requests);
+        let Some(Held::Surface(surface)) = held.pop() else {
+            return;
+        };
+        for side in arranged.sides.drain(..) {
+            commands.entity(side.entity).despawn();
+        }
+        let mut held = held.into_iter();
+        for side in &needs.sides {
+            let (images_of_side, codings): (Vec<Handle<Image>>, Vec<Coding>) = held
+                .by_ref()
+                .take(side.maps.len())
+                .filter_map(|held| match held {
+                    Held::Map(image, coding) => Some((image, coding)),
+                    Held::Surface(_) => None,
+                })
+                .unzip();
+            let table = library
+                .bypass_change_detection()
+                .interface(drawing.paper.index, drawing.paper.specular);
+            let alpha = (!side.terms.roughness_map).then_some(drawing.paper.roughness);
+            let interface = (side.terms.tier == Tier::Gallery)
+                .then(|| images.add(upload::interface_image(&table, alpha)));
+            let material = materials.add(PaperMaterial {
+                paper: constants(drawing, side, &codings),
+                terms: side.terms,
+                maps: bound(side, images_of_side, interface),
+                dither: arranged.dither,
+            });
+            let mesh = meshes.add(side_surface(&surface, drawing, side.side).mesh());
+            let entity = commands
+                .spawn((
+                    Mesh3d(mesh),
+                    MeshMaterial3d(material.clone()),
+                    NoFrustumCulling,
+                ))
+                .id();
+            let (name, needs) = (side.side, side.clone());
+            arranged.sides.push(ArrangedSide {
+                name,
+                entity,
+                material,
+                needs,
+            });
+        }
+        arranged.needs = Some(wanted);
+    }
+    let lighting = shown.exhibit.lighting(&shown.scene);
+    for side in &arranged.sides {
+        if let Some(mut material) = materials.get_mut(&side.material) {
+            place(&mut material.paper, &shown, drawing, side, &lighting);
+        }
+    }
+    arranged.settled = true;
+}
+
+/// What does not change while the sheet and the lamps move.
+fn constants(drawing: &Drawing, side: &SideNeeds, codings: &[Coding]) -> PaperUniform {
+    let paper = &drawing.paper;
+    let mut uniform = PaperUniform {
+        table: Vec3::splat(TABLE),
+        bare: Vec3::from_array(BARE_PAPER),
+        alpha: paper.roughness.max(ALPHA_MIN) as f32,
+        specular: if side.terms.specular {
+            paper.specular as f32
+        } else {
+            0.0
+        },
+        eta: paper.index as f32,
+        f_normal: normal_reflectance(paper.index) as f32,
+        size: drawing.size_mm.as_vec2(),
+        ..PaperUniform::default()
+    };
+    // With shared coordinates, the vertex shader reads the albedo's place for every map.
+    if let Some(first) = side.maps.first() {
+        uniform.albedo_place = MapPlace::new(first.file().uv_from_side);
+    }
+    for (map, coding) in side.maps.iter().zip(codings) {
+        let uv_from_side = map.file().uv_from_side;
+        match map {
+            MapUse::Albedo(_) | MapUse::Overlay(_) => {}
+            MapUse::Normal(_) | MapUse::NormalFromHeight(..) => {
+                uniform.set_normal_place(uv_from_side, *coding);
+            }
+            MapUse::Roughness(_) => uniform.roughness_place = MapPlace::new(uv_from_side),
+            MapUse::Outline(_) => uniform.outline_place = MapPlace::new(uv_from_side),
+        }
+    }
+    uniform
+}
+
+fn bound(
+    side: &SideNeeds,
+    images: Vec<Handle<Image>>,
+    interface: Option<Handle<Image>>,
+) -> PaperMaps {
+    let mut maps = PaperMaps {
+        interface,
+        ..PaperMaps::default()
+    };
+    for (map, image) in side.maps.iter().zip(images) {
+        match map {
+            MapUse::Albedo(_) => maps.albedo = Some(image),
+            MapUse::Normal(_) | MapUse::NormalFromHeight(..) => maps.normal = Some(image),
+            MapUse::Roughness(_) => maps.roughness = Some(image),
+            MapUse::Outline(_) => maps.outline = Some(image),
+            MapUse::Overlay(_) => maps.overlays.push(image),
+        }
+    }
+    maps
+}
+
+fn side_surface(recto: &SideSurface, drawing: &Drawing, side: SideName) -> SideSurface {
+    match side {
+        SideName::Recto => recto.clone(),
+        SideName::Verso => recto.other_side(drawing.size_mm, drawing.flip),
+    }
+}
+
+/// Eye, lamps and overlays as they are now.
+fn place(
+    uniform: &mut PaperUniform,
+    shown: &Shown,
+    drawing: &Drawing,
+    side: &ArrangedSide,
+    lighting: &Lighting,
+) {
+    let table_from_local: DQuat = shown.pose * drawing.rest_pose(side.name).inverse();
+    let eye = Eye::new(&shown.scene.camera, drawing.size_mm);
+    let place: DVec4 = eye.place();
+    let table_from_local_matrix = DMat4::from_quat(table_from_local);
+    uniform.set_eye(
+        eye.clip_from_table(shown.aspect),
+        place,
+        table_from_local_matrix,
+    );
+    uniform.set_lights(
+        &lighting.lights,
+        lighting.ambient,
+        table_from_local.inverse(),
+        shown.tier == Tier::Draft,
+    );
+    uniform.sign_gain = (1.0 / shown.scene.exposure.level) as f32;
+    let overlays: Vec<MapPlace> = side
+        .needs
+        .maps
+        .iter()
+        .filter_map(|map| match map {
+            MapUse::Overlay(overlay) => Some(overlay),
+            _ => None,
+        })
+        .zip(
+            shown
+                .scene
+                .overlays
+                .iter()
+                .filter(|(_, opacity)| *opacity > 0.0),
+        )
+        .map(|(overlay, (_, opacity))| {
+            MapPlace::overlay(overlay.file.uv_from_side, *opacity, is_lit(&overlay.kind))
+        })
+        .collect();
+    uniform.overlay_count = overlays.len() as u32;
+    for (slot, overlay) in uniform.overlays.iter_mut().zip(overlays) {
+        *slot = overlay;
+    }
+}
