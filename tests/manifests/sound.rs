@@ -1,0 +1,397 @@
+//! What sound manifests mean.
+
+use glam::{DVec2, DVec3};
+use recto::{
+    manifest::{
+        CompareMode, Exhibit, FlipAxis, LampKind, MediaContent, Member, OverlayKind, SideName,
+        Source, Surface, check_shape, create,
+    },
+    units::{Candela, Degrees, Kelvin, Lux, Nits},
+};
+
+use super::Folder;
+
+pub const FULL: &str = include_str!("full.toml");
+pub const SMALL: &str = "\
+[exhibit]
+title = { en = \"One sheet\", it = \"Un foglio\" }
+
+[[drawing]]
+id = \"sheet\"
+size_mm = [200.0, 100.0]
+recto.albedo = \"recto.png\"
+";
+
+fn read(manifest: &str) -> Exhibit {
+    let folder = Folder::with(manifest);
+    let (exhibit, warnings) = Exhibit::read(&folder.exhibit).unwrap();
+    assert_eq!(warnings, []);
+    exhibit
+}
+
+fn warnings(manifest: &str) -> Vec<String> {
+    let folder = Folder::with(manifest);
+    let (_, warnings) = Exhibit::read(&folder.exhibit).unwrap();
+    warnings
+        .iter()
+        .map(|warning| folder.relative(&warning.to_string()))
+        .collect()
+}
+
+fn close(a: f64, b: f64) {
+    assert!((a / b - 1.0).abs() < 1e-9, "{a} is not {b}");
+}
+
+#[test]
+fn a_picture_and_a_size_are_enough() {
+    let exhibit = read(SMALL);
+    assert_eq!(exhibit.languages, ["en", "it"]);
+    assert_eq!(exhibit.text(&exhibit.title, "it-CH"), Some("Un foglio"));
+    let [scene] = &exhibit.scenes[..] else {
+        panic!("{:?}", exhibit.scenes)
+    };
+    assert_eq!(
+        (scene.id.as_str(), scene.drawing, scene.side),
+        ("sheet", 0, SideName::Recto)
+    );
+    assert_eq!(scene.camera.centre_mm, DVec2::new(100.0, 50.0));
+    assert!(scene.camera.width_mm > 200.0);
+    assert_eq!(scene.lamps, [0]);
+    // The lamp's colour is the one shown as neutral, and the exposure is the lamp's own: the
+    // photograph is shown as it is.
+    assert_eq!(exhibit.lamps[0].kelvin, scene.exposure.white);
+    assert_eq!(
+        (scene.exposure.illuminance, scene.exposure.level),
+        (None, 1.0)
+    );
+    assert_eq!(scene.ambient.illuminance, Lux(0.0));
+    let drawing = &exhibit.drawings[0];
+    assert_eq!(drawing.recto.albedo.file.size, [20, 10]);
+    let uv = drawing.recto.albedo.file.uv_from_side;
+    assert_eq!(
+        uv.transform_point2(DVec2::new(200.0, 50.0)),
+        DVec2::new(1.0, 0.5)
+    );
+    assert_eq!(drawing.side_in_state(SideName::Verso, None), None);
+    assert_eq!(exhibit.not_shown_yet, Vec::<String>::new());
+}
+
+#[test]
+fn the_manifest_is_found_by_folder_or_by_name() {
+    let folder = Folder::with(SMALL);
+    std::fs::rename(
+        folder.exhibit.join("exhibit.toml"),
+        folder.exhibit.join("other.toml"),
+    )
+    .unwrap();
+    let (exhibit, _) = Exhibit::read(&folder.exhibit.join("other.toml")).unwrap();
+    assert_eq!(exhibit.folder, folder.exhibit);
+    assert!(exhibit.drawings[0].recto.albedo.file.path.is_file());
+}
+
+#[test]
+fn a_byte_order_mark_is_no_fault() {
+    read(&format!("\u{feff}{SMALL}"));
+}
+
+#[test]
+fn every_key_arrives() {
+    let exhibit = read(FULL);
+    let sheet = &exhibit.drawings[0];
+    assert_eq!(exhibit.languages, ["en", "it", "pt-BR"]);
+    assert_eq!(sheet.flip, FlipAxis::Horizontal);
+    assert_eq!(sheet.paper.source, Source::Fitted);
+    assert!(matches!(&sheet.surface, Surface::Height(map) if map.range_um == [0.0, 4000.0]));
+    assert!(
+        matches!(&exhibit.drawings[1].surface, Surface::Gltf(path) if path.ends_with("sheet.glb"))
+    );
+    assert_eq!(
+        sheet.recto.height.as_ref().unwrap().file.source,
+        Source::Fitted
+    );
+    assert_eq!(sheet.recto.albedo.file.source, Source::Measured);
+    let [first, second] = &sheet.recto.media[..] else {
+        panic!("{:?}", sheet.recto.media)
+    };
+    assert!(matches!(&first.content, MediaContent::Legend(legend) if legend.len() == 2));
+    assert!(matches!(&second.content, MediaContent::Weights(media) if media.len() == 1));
+    assert!(
+        sheet
+            .verso
+            .as_ref()
+            .unwrap()
+            .roughness
+            .as_ref()
+            .unwrap()
+            .gloss
+    );
+    let verso = sheet.verso.as_ref().unwrap().albedo.file.uv_from_side;
+    assert!((verso.transform_point2(DVec2::new(100.0, 50.5)) - DVec2::splat(0.5)).length() < 1e-9);
+    let kinds: Vec<_> = sheet.overlays.iter().map(|overlay| &overlay.kind).collect();
+    assert!(matches!(
+        kinds[..],
+        [
+            OverlayKind::Categorical(_),
+            OverlayKind::Continuous { .. },
+            OverlayKind::Picture(_)
+        ]
+    ));
+    assert_eq!(sheet.hotspots[0].scene, 0);
+    let (_, washes) = exhibit.scene("washes").unwrap();
+    assert_eq!(washes.overlays, [(0, 1.0), (2, 0.5)]);
+    assert_eq!(washes.exposure.illuminance, Some(Lux(200.0)));
+    assert_eq!(washes.exposure.level, 0.9);
+    assert_eq!(washes.language.as_deref(), Some("it"));
+    let (_, restoration) = exhibit.scene("restoration").unwrap();
+    let compare = restoration.compare.as_ref().unwrap();
+    assert_eq!(compare.mode, CompareMode::Curtain);
+    assert_eq!(
+        compare.of,
+        [
+            Member::State(0),
+            Member::State(1),
+            Member::Side(SideName::Verso),
+            Member::Overlay(0),
+            Member::Drawing(1)
+        ]
+    );
+    assert_eq!(exhibit.tours[0].stops, [(0, 10.0), (2, 8.5)]);
+    assert_eq!(exhibit.maps().count(), 19);
+}
+
+#[test]
+fn sound_pictures_pass_and_a_damaged_one_is_named_where_it_is_written() {
+    let folder = Folder::with(FULL);
+    let (exhibit, _) = Exhibit::read(&folder.exhibit).unwrap();
+    assert_eq!(exhibit.verify(exhibit.maps()), Ok(()));
+    let truncated = std::fs::read(folder.exhibit.join("truncated.png")).unwrap();
+    std::fs::write(folder.exhibit.join("small.png"), truncated).unwrap();
+    let faults = exhibit.verify(exhibit.maps()).unwrap_err();
+    assert_eq!(
+        folder.relative(&faults.to_string()),
+        "exhibit.toml:49:16: drawing[0].state[0].recto.albedo: found \"small.png\", which is damaged \
+         (it ends too early); allowed: a whole file; export or copy it again"
+    );
+}
+
+#[test]
+fn what_is_not_shown_yet_is_named() {
+    assert_eq!(
+        read(FULL).not_shown_yet,
+        [
+            "Lamp \"ring\": disc lamps are not shown yet.",
+            "Lamp \"studio\": lamps by a photometric file are not shown yet.",
+            "Lamp \"table\": light tables are not shown yet.",
+            "Drawing \"landscape\": transmission is not shown yet.",
+            "Drawing \"landscape\": hotspots are not shown yet.",
+            "Scene \"restoration\": comparisons (curtain) are not shown yet.",
+            "Tour \"attract\": tours do not run yet.",
+        ]
+    );
+}
+
+#[test]
+fn a_scene_like_another_takes_over_what_it_does_not_give() {
+    let exhibit = read(FULL);
+    let (_, washes) = exhibit.scene("washes").unwrap();
+    let (_, closer) = exhibit.scene("closer").unwrap();
+    assert_eq!(closer.overlays, washes.overlays);
+    assert_eq!(closer.lamps, washes.lamps);
+    assert_eq!((washes.state, closer.state), (Some(0), None));
+    assert_eq!(
+        (closer.camera.width_mm, closer.camera.tilt),
+        (30.0, Degrees(0.0))
+    );
+}
+
+#[test]
+fn a_state_replaces_maps_and_keeps_the_others() {
+    let exhibit = read(FULL);
+    let sheet = &exhibit.drawings[0];
+    let before = sheet.side_in_state(SideName::Recto, Some(0)).unwrap();
+    assert_eq!(before.albedo.file.size, [10, 5]);
+    assert_eq!(before.height, sheet.recto.height);
+    assert_eq!(
+        sheet.side_in_state(SideName::Recto, None).as_ref(),
+        Some(&sheet.recto)
+    );
+}
+
+#[test]
+fn lamps_stand_where_their_angles_say() {
+    let exhibit = read(FULL);
+    let LampKind::Rectangle {
+        position_mm,
+        aim_mm,
+        ..
+    } = exhibit.lamps[3].kind
+    else {
+        panic!()
+    };
+    let (sin, cos) = 12f64.to_radians().sin_cos();
+    assert!((position_mm - DVec3::new(-600.0 * cos, 0.0, 600.0 * sin)).length() < 1e-9);
+    assert_eq!(aim_mm, DVec3::ZERO);
+    let LampKind::Spot { position_mm, .. } = exhibit.lamps[2].kind else {
+        panic!()
+    };
+    assert!(
+        position_mm.y < 0.0,
+        "azimuth -90 is the bottom edge: {position_mm}"
+    );
+    assert_eq!(exhibit.lamps[3].kelvin, Kelvin(3000.0));
+}
+
+#[test]
+fn photometric_units_become_one() {
+    let exhibit = read(FULL);
+    let LampKind::Point {
+        intensity: Candela(bulb),
+        ..
+    } = exhibit.lamps[1].kind
+    else {
+        panic!()
+    };
+    close(bulb, 400.0 / (4.0 * std::f64::consts::PI));
+    // 150 lx from a small source would be L·A = E·d²; this one is nearly small.
+    let LampKind::Rectangle {
+        luminance: Nits(nits),
+        ..
+    } = exhibit.lamps[3].kind
+    else {
+        panic!()
+    };
+    let small = 150.0 * 0.6 * 0.6 / (0.2 * 0.04);
+    assert!(nits > small && nits < 1.05 * small, "{nits} for {small}");
+}
+
+#[test]
+fn one_control_point_moves_two_turn_and_three_stretch() {
+    let points = |points: &str| {
+        let exhibit = read(&format!("{SMALL}recto.control_points = [{points}]\n"));
+        exhibit.drawings[0].recto.albedo.file.uv_from_side
+    };
+    let near = |a: DVec2, b: DVec2| assert!((a - b).length() < 1e-9, "{a} is not {b}");
+    let moved = points("{ picture = [0, 0], sheet_mm = [10, 20] }");
+    near(moved.transform_point2(DVec2::new(210.0, 120.0)), DVec2::ONE);
+    let turned = points(
+        "{ picture = [20, 10], sheet_mm = [0, 0] }, { picture = [0, 0], sheet_mm = [200, 100] }",
+    );
+    near(
+        turned.transform_point2(DVec2::new(0.0, 100.0)),
+        DVec2::new(1.0, 0.0),
+    );
+    let stretched = points(
+        "{ picture = [0, 0], sheet_mm = [0, 0] }, { picture = [20, 0], sheet_mm = [100, 0] }, \
+         { picture = [0, 10], sheet_mm = [0, 100] }",
+    );
+    near(
+        stretched.transform_point2(DVec2::new(50.0, 100.0)),
+        DVec2::new(0.5, 1.0),
+    );
+}
+
+#[test]
+fn what_is_probably_not_meant_is_a_warning() {
+    assert_eq!(
+        warnings(&SMALL.replace("[200.0, 100.0]", "[200, 90]")),
+        [
+            "exhibit.toml:7:16: warning: drawing[0].recto.albedo: found a picture of 20 × 10 pixels, \
+          which is 11 % taller in proportion than the sheet of 200 × 90 mm; allowed: the sheet's \
+          proportions within 2 %; check size_mm, crop the picture to the sheet, or register it"
+        ]
+    );
+    assert_eq!(
+        warnings(&SMALL.replace("[exhibit]", "[exhibit]\nlanguages = [\"en\"]")),
+        [
+            "exhibit.toml:3:34: warning: exhibit.title.it: found a text in \"it\", which visitors \
+          cannot choose; allowed: \"en\"; add this language to exhibit.languages"
+        ]
+    );
+    assert_eq!(
+        warnings(&format!(
+            "{SMALL}recto.media = {{ file = \"legend.jpg\", legend = {{ \"#000000\" = \"wash\" }} }}\n"
+        )),
+        [
+            "exhibit.toml:8:24: warning: drawing[0].recto.media.file: found a JPEG file, which \
+          changes colours at every edge; allowed: colours exactly as in the legend; export it as \
+          PNG"
+        ]
+    );
+    assert_eq!(
+        warnings(&format!(
+            "{SMALL}[[scene]]\nid = \"a\"\ncamera.centre_mm = [300, 0]\n"
+        )),
+        [
+            "exhibit.toml:10:20: warning: scene[0].camera.centre_mm: found a place beside the sheet, \
+          300 mm, 0 mm; allowed: 0 to 200 mm and 0 to 100 mm; measure from the left and top edges \
+          of the side that is shown"
+        ]
+    );
+}
+
+#[test]
+fn a_new_exhibit_is_sound_and_an_old_one_is_kept() {
+    let folder = Folder::new();
+    let picture = folder.exhibit.join("recto.png");
+    let fresh = folder.exhibit.join("a/new \"exhibit\"");
+    let manifest = create(&fresh, &picture, [200.0, 100.0]).unwrap();
+    let (exhibit, warnings) = Exhibit::read(&manifest).unwrap();
+    assert_eq!(
+        (warnings.len(), exhibit.drawings[0].size_mm),
+        (0, DVec2::new(200.0, 100.0))
+    );
+    check_shape(&std::fs::read_to_string(&manifest).unwrap()).unwrap();
+
+    let error = create(&fresh, &picture, [200.0, 100.0]).unwrap_err();
+    assert!(error.to_string().ends_with(
+        "exhibit.toml: an exhibit is there already; choose another folder or remove the file"
+    ));
+    let error = create(&folder.exhibit, &picture, [f64::NAN, 100.0]).unwrap_err();
+    assert!(error.to_string().contains("found nan"), "{error}");
+    assert!(!folder.exhibit.join("exhibit.toml").exists());
+    let letter = folder.exhibit.join("letter.png");
+    assert!(create(&folder.exhibit.join("b"), &letter, [200.0, 100.0]).is_err());
+    assert!(!folder.exhibit.join("b").exists());
+}
+
+#[test]
+fn lamps_and_cameras_can_be_given_in_one_line() {
+    let exhibit = read(FULL);
+    assert_eq!(
+        exhibit.lamp_from_spec("--lamp", "bulb").unwrap(),
+        exhibit.lamps[1]
+    );
+    let spec = "kind=distant, lux_at_sheet=500, elevation_deg=10, azimuth_deg=90";
+    assert_eq!(
+        exhibit.lamp_from_spec("--lamp", spec).unwrap().kind,
+        LampKind::Distant {
+            illuminance: Lux(500.0),
+            elevation: Degrees(10.0),
+            azimuth: Degrees(90.0)
+        }
+    );
+    let faults = |spec| {
+        let faults = exhibit.lamp_from_spec("--lamp", spec).unwrap_err();
+        faults.to_string()
+    };
+    assert_eq!(
+        faults("kind=point, lumens=400, position_mm=[0, 0, nan]"),
+        "--lamp lumens: found the unknown key \"lumens\"; allowed: kind, id, title, kelvin, \
+         lux_at_sheet, candela, lumen, position_mm, elevation_deg, azimuth_deg, distance_mm; did \
+         you mean \"lumen\"?\n\
+         --lamp position_mm[2]: found nan; allowed: a number from -100000 to 100000 mm; write an \
+         ordinary number"
+    );
+    assert!(faults("sun").starts_with("--lamp: found text that is not TOML"));
+
+    let drawing = &exhibit.drawings[0];
+    let camera = |spec| drawing.camera_from_spec("--camera", spec);
+    let over = camera("centre_mm=[92, 60],width_mm=80").unwrap();
+    assert_eq!(over.centre_mm, DVec2::new(92.0, 60.0));
+    assert_eq!(over.width_mm, 80.0);
+    assert_eq!(
+        camera("tilt_deg=95").unwrap_err().to_string(),
+        "--camera tilt_deg: found 95; allowed: a number from 0 to 89 degrees; write a number \
+         within this range"
+    );
+}
