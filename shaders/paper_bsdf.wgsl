@@ -5,6 +5,8 @@
 // sources stand with the f64 twins. Struct members must not end in a digit.
 
 const PI: f32 = 3.14159265358979;
+// Multiplying is cheaper than dividing, and no less exact here.
+const INV_PI: f32 = 0.31830988618379;
 const ALPHA_MIN: f32 = 1e-4;
 const MU_MIN: f32 = 1e-4;
 const LENGTH_MIN: f32 = 1e-6;
@@ -13,13 +15,16 @@ const LENGTH_MIN: f32 = 1e-6;
 
 fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
     let c = clamp(cos_i, 0.0, 1.0);
-    let sin2_t = (1.0 - c * c) / (eta * eta);
-    if sin2_t >= 1.0 {
+    let k = (eta - 1.0) * (eta + 1.0);
+    let g_2 = k + c * c;
+    if g_2 <= 0.0 {
         return 1.0;
     }
-    let cos_t = sqrt(1.0 - sin2_t);
-    let r_s = (c - eta * cos_t) / (c + eta * cos_t);
-    let r_p = (eta * c - cos_t) / (eta * c + cos_t);
+    let g = sqrt(g_2);
+    let s = c + g;
+    let p = (k + 1.0) * c + g;
+    let r_s = k / (s * s);
+    let r_p = k * ((k + 2.0) * c * c - 1.0) / (p * p);
     return 0.5 * (r_s * r_s + r_p * r_p);
 }
 
@@ -35,7 +40,7 @@ fn d_ggx(sin2_h: f32, alpha: f32) -> f32 {
     let a_2 = alpha * alpha;
     let cos2_h = 1.0 - sin2_h;
     let d = cos2_h * a_2 + sin2_h;
-    return a_2 / (PI * d * d);
+    return a_2 * INV_PI / (d * d);
 }
 
 fn v_smith(mu_i: f32, mu_o: f32, alpha: f32) -> f32 {
@@ -58,6 +63,60 @@ struct InterfaceMean {
     capture: f32,
 }
 
+const ALPHA_FIT_MIN: f32 = 0.1;
+
+// Coefficients over the powers of √μ, each over the powers of √α.
+struct InterfaceTable {
+    t: array<vec4<f32>, 7>,
+    lost: array<vec4<f32>, 4>,
+    compensation: vec4<f32>,
+    t_mean: vec4<f32>,
+    capture: vec4<f32>,
+}
+
+// The table at one roughness: what interface_at needs for every direction of a pixel.
+struct InterfaceRow {
+    t: array<f32, 7>,
+    lost: array<f32, 4>,
+}
+
+// Powers of √α.
+fn fit_powers(alpha: f32) -> vec4<f32> {
+    let s = sqrt(clamp(alpha, ALPHA_FIT_MIN, 1.0));
+    return vec4(1.0, s, s * s, s * s * s);
+}
+
+// `p` are the powers of √α, or (1, 0, 0, 0) for a table at one roughness.
+fn interface_row(table: InterfaceTable, p: vec4<f32>) -> InterfaceRow {
+    return InterfaceRow(
+        array<f32, 7>(
+            dot(table.t[0], p), dot(table.t[1], p), dot(table.t[2], p), dot(table.t[3], p),
+            dot(table.t[4], p), dot(table.t[5], p), dot(table.t[6], p),
+        ),
+        array<f32, 4>(
+            dot(table.lost[0], p), dot(table.lost[1], p), dot(table.lost[2], p),
+            dot(table.lost[3], p),
+        ),
+    );
+}
+
+fn interface_at(row: InterfaceRow, mu: f32) -> Interface {
+    let x = sqrt(clamp(mu, 0.0, 1.0));
+    let c = row.t;
+    let t = (((((c[6] * x + c[5]) * x + c[4]) * x + c[3]) * x + c[2]) * x + c[1]) * x + c[0];
+    let d = row.lost;
+    let lost = ((d[3] * x + d[2]) * x + d[1]) * x + d[0];
+    return Interface(clamp(t, 0.0, 1.0), clamp(lost, 0.0, 1.0));
+}
+
+fn interface_mean_at(table: InterfaceTable, p: vec4<f32>) -> InterfaceMean {
+    return InterfaceMean(
+        max(dot(table.compensation, p), 0.0),
+        dot(table.t_mean, p),
+        dot(table.capture, p),
+    );
+}
+
 // Twins of src/optics/tier.rs
 
 struct Surface {
@@ -77,7 +136,7 @@ struct Facing {
 
 fn facing(n: vec3<f32>, l: vec3<f32>, v: vec3<f32>) -> Facing {
     let sum = l + v;
-    let h = sum / max(length(sum), LENGTH_MIN);
+    let h = sum * inverseSqrt(max(dot(sum, sum), LENGTH_MIN * LENGTH_MIN));
     let across = cross(n, h);
     return Facing(
         max(dot(n, l), MU_MIN),
@@ -88,14 +147,14 @@ fn facing(n: vec3<f32>, l: vec3<f32>, v: vec3<f32>) -> Facing {
 }
 
 fn brdf_lambert(s: Surface) -> vec3<f32> {
-    return s.albedo / PI;
+    return s.albedo * INV_PI;
 }
 
 fn brdf_draft(s: Surface, g: Facing) -> vec3<f32> {
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_schlick(g.cos_d, s.f_normal);
-    return s.albedo / PI + vec3(s.specular * lobe);
+    return s.albedo * INV_PI + vec3(s.specular * lobe);
 }
 
 fn brdf_gallery(
@@ -108,7 +167,7 @@ fn brdf_gallery(
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_dielectric(g.cos_d, s.eta);
-    let diffuse = at_i.t * at_o.t * mean.capture / PI;
+    let diffuse = at_i.t * at_o.t * mean.capture * INV_PI;
     let compensated = mean.compensation * at_i.lost * at_o.lost;
     return s.albedo * diffuse + vec3(s.specular * lobe + compensated);
 }
@@ -136,6 +195,10 @@ struct Light {
 struct Incidence {
     l: vec3<f32>,
     e: vec3<f32>,
+}
+
+fn light_distant(light: Light) -> Incidence {
+    return Incidence(light.place, light.amount);
 }
 
 fn light_punctual(light: Light, p: vec3<f32>) -> Incidence {

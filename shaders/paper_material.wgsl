@@ -3,15 +3,14 @@
 // z out of the side. The definitions (#ifdef) are set from `Terms` in src/sheet/material.rs.
 
 #import "embedded://recto/paper_bsdf.wgsl"::{
-    ALPHA_MIN, MU_MIN, PI,
-    Facing, Incidence, Interface, InterfaceMean, Light, Surface,
-    brdf_draft, brdf_gallery, brdf_lambert, facing, light_punctual, light_rectangle,
+    ALPHA_MIN, INV_PI, MU_MIN,
+    Facing, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Surface,
+    brdf_draft, brdf_gallery, brdf_lambert, facing, fit_powers, interface_at,
+    interface_mean_at, interface_row, light_distant, light_punctual, light_rectangle,
 }
 
 // Largest value a half-float target holds.
 const RADIANCE_MAX: f32 = 65504.0;
-const MU_NODES: i32 = 32;
-const ALPHA_NODES: i32 = 16;
 
 // Texture coordinates of a map: rows applied to (x, y, 1) of the side frame.
 struct MapPlace {
@@ -24,7 +23,7 @@ struct MapPlace {
 
 struct Paper {
     clip_from_local: mat4x4<f32>,
-    // Place of the eye (w = 1) or direction towards it (w = 0).
+    // Place of the eye, or the unit vector towards it (PARALLEL_EYE).
     eye: vec4<f32>,
     ambient: vec3<f32>,
     lamp_count: u32,
@@ -46,6 +45,7 @@ struct Paper {
     normal_place: MapPlace,
     roughness_place: MapPlace,
     outline_place: MapPlace,
+    interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,
 }
@@ -56,7 +56,6 @@ struct Paper {
 @group(#{MATERIAL_BIND_GROUP}) @binding(3) var normal_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(4) var roughness_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(5) var outline_map: texture_2d<f32>;
-@group(#{MATERIAL_BIND_GROUP}) @binding(6) var interface_nodes: texture_2d<f32>;
 #ifdef OVERLAYS
 @group(#{MATERIAL_BIND_GROUP}) @binding(16) var overlay_map_a: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(17) var overlay_map_b: texture_2d<f32>;
@@ -123,34 +122,6 @@ fn map_uv(place: MapPlace, in: Varyings) -> vec2<f32> {
     return place_uv(place, in.side);
 #endif
 }
-
-#ifdef TIER_GALLERY
-fn interface_node(i: i32, y: f32) -> vec4<f32> {
-#ifdef ROUGHNESS_MAP
-    let j = min(i32(y), ALPHA_NODES - 2);
-    let low = textureLoad(interface_nodes, vec2(i, j), 0);
-    let high = textureLoad(interface_nodes, vec2(i, j + 1), 0);
-    return mix(low, high, y - f32(j));
-#else
-    return textureLoad(interface_nodes, vec2(i, 0), 0);
-#endif
-}
-
-// Twin of InterfaceTable::at.
-fn interface_at(mu: f32, alpha: f32) -> Interface {
-    let x = sqrt(clamp(mu, 0.0, 1.0)) * f32(MU_NODES - 1);
-    let y = alpha * f32(ALPHA_NODES - 1);
-    let i = min(i32(x), MU_NODES - 2);
-    let node = mix(interface_node(i, y), interface_node(i + 1, y), x - f32(i));
-    return Interface(node.x, node.y);
-}
-
-// Twin of InterfaceTable::mean_at: the means stand in the column behind the nodes.
-fn interface_mean_at(alpha: f32) -> InterfaceMean {
-    let node = interface_node(MU_NODES, alpha * f32(ALPHA_NODES - 1));
-    return InterfaceMean(node.x, node.y, node.z);
-}
-#endif
 
 #ifdef EDGE
 // Share of a pixel that the rectangular sheet covers, with a smooth step one pixel wide.
@@ -277,19 +248,31 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let tangent = normalize(in.tangent - geometric * dot(geometric, in.tangent));
     n = tangent * n.x + cross(geometric, tangent) * n.y + geometric * n.z;
 #endif
-#ifdef NORMAL_MAP
-    n = normalize(n);
-#endif
 
-    let v = normalize(paper.eye.xyz - in.local * paper.eye.w);
+#ifdef PARALLEL_EYE
+    let v = paper.eye.xyz;
+#else
+    let v = normalize(paper.eye.xyz - in.local);
+#endif
     let s = Surface(albedo, alpha, paper.eta, paper.f_normal, paper.specular);
 #ifdef TIER_GALLERY
-    let at_o = interface_at(max(dot(n, v), MU_MIN), alpha);
-    let mean = interface_mean_at(alpha);
+#ifdef ROUGHNESS_MAP
+    let powers = fit_powers(alpha);
+#else
+    let powers = vec4(1.0, 0.0, 0.0, 0.0);
+#endif
+    let row = interface_row(paper.interface_table, powers);
+    let mean = interface_mean_at(paper.interface_table, powers);
+    let at_o = interface_at(row, max(dot(n, v), MU_MIN));
 #endif
     var radiance = vec3(0.0);
+#ifdef ONE_LAMP
+    {
+        let light = paper.lights[0];
+#else
     for (var k = 0u; k < paper.lamp_count; k++) {
         let light = paper.lights[k];
+#endif
 #ifdef AREA_LAMPS
         let samples = max(light.grid * light.grid, 1u);
         for (var i = 0u; i < samples; i++) {
@@ -301,7 +284,11 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
             }
 #else
         {
+#ifdef DISTANT_LAMPS
+            let incidence = light_distant(light);
+#else
             let incidence = light_punctual(light, in.local);
+#endif
 #endif
             let mu_i = dot(n, incidence.l);
             if mu_i > 0.0 && dot(geometric, incidence.l) > 0.0 {
@@ -312,7 +299,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
                 let f = brdf_draft(s, facing(n, incidence.l, v));
 #endif
 #ifdef TIER_GALLERY
-                let f = brdf_gallery(s, facing(n, incidence.l, v), interface_at(mu_i, alpha), at_o, mean);
+                let f = brdf_gallery(s, facing(n, incidence.l, v), interface_at(row, mu_i), at_o, mean);
 #endif
                 radiance += f * incidence.e * mu_i;
             }
@@ -321,7 +308,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef AMBIENT
 #ifdef TIER_GALLERY
     let diffuse = albedo * (at_o.t * mean.t_mean * mean.capture);
-    radiance += (diffuse + vec3(1.0 - at_o.t)) * paper.ambient / PI;
+    radiance += (diffuse + vec3(1.0 - at_o.t)) * paper.ambient * INV_PI;
 #else
     radiance += brdf_lambert(s) * paper.ambient;
 #endif

@@ -34,7 +34,12 @@ pub struct Terms {
     pub specular: bool,
     pub ambient: bool,
     pub area_lamps: bool,
-    pub punctual_lamps: bool,
+    /// All lamps are distant: neither place nor distance matters.
+    pub distant_lamps: bool,
+    /// There is no loop over lamps.
+    pub one_lamp: bool,
+    /// The eye is in one direction from everywhere.
+    pub parallel_eye: bool,
     /// How many overlays lie on the side.
     pub overlays: u32,
 }
@@ -172,16 +177,22 @@ fn side_needs(
         ..Terms::default()
     };
 
-    for &lamp in &scene.lamps {
-        match exhibit.lamps[lamp].kind {
-            LampKind::Rectangle { .. } => terms.area_lamps = true,
-            LampKind::Distant { .. } | LampKind::Point { .. } | LampKind::Spot { .. } => {
-                terms.punctual_lamps = true;
-            }
-            LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => {}
-        }
-    }
-    let directional = terms.area_lamps || terms.punctual_lamps;
+    let shown: Vec<&LampKind> = scene
+        .lamps
+        .iter()
+        .map(|&lamp| &exhibit.lamps[lamp].kind)
+        .filter(|kind| is_shown(kind))
+        .collect();
+    terms.area_lamps = tier != Tier::Draft
+        && shown
+            .iter()
+            .any(|kind| matches!(kind, LampKind::Rectangle { .. }));
+    terms.distant_lamps = shown
+        .iter()
+        .all(|kind| matches!(kind, LampKind::Distant { .. }));
+    terms.one_lamp = shown.len() == 1;
+    terms.parallel_eye = scene.camera.distance_mm.is_none();
+    let directional = !shown.is_empty();
     terms.ambient = scene.ambient.illuminance.0 > 0.0;
     terms.specular = tier != Tier::Lambert && drawing.paper.specular > 0.0;
 
@@ -227,13 +238,28 @@ fn side_needs(
     let mut of_side = maps.iter().filter(|map| !matches!(map, MapUse::Overlay(_)));
     let first = of_side.next().map(|map| map.file().uv_from_side);
     terms.shared_uv = of_side.all(|map| Some(map.file().uv_from_side) == first);
-    if terms.area_lamps && tier == Tier::Draft {
+    if tier == Tier::Draft
+        && shown
+            .iter()
+            .any(|kind| matches!(kind, LampKind::Rectangle { .. }))
+    {
         say("rectangle lamps as points: the draft tier".into());
     }
     SideNeeds {
         side: name,
         terms,
         maps,
+    }
+}
+
+/// Whether this version can light a scene with such a lamp.
+pub fn is_shown(kind: &LampKind) -> bool {
+    match kind {
+        LampKind::Distant { .. }
+        | LampKind::Point { .. }
+        | LampKind::Spot { .. }
+        | LampKind::Rectangle { .. } => true,
+        LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => false,
     }
 }
 

@@ -7,7 +7,10 @@ use glam::{DVec2, DVec3};
 use super::exhibit::{Exhibit, LampKind, Scene};
 use crate::{
     colour,
-    optics::lamp::{Light, Shape},
+    optics::{
+        lamp::{Light, Shape},
+        lamp_units::area_axes,
+    },
     units::{Degrees, Kelvin},
 };
 
@@ -135,15 +138,8 @@ fn shape(kind: &LampKind) -> Option<(Shape, f64)> {
 /// A rectangle at `centre` that faces `aim`, its width horizontal, sampled finely enough for
 /// how large it looks from there.
 fn rectangle(centre: DVec3, aim: DVec3, size_mm: DVec2) -> Shape {
-    let axis = (aim - centre).normalize_or(-DVec3::Z);
-    // Straight above, "horizontal" is the sheet's own x.
-    let across = DVec3::Z.cross(axis);
-    let u = if across.length() > 1e-6 {
-        across.normalize()
-    } else {
-        DVec3::X
-    };
-    let v = axis.cross(u);
+    // A lamp that aims at itself was refused; straight down is as good as any.
+    let [u, v, axis] = area_axes(centre, aim).unwrap_or([DVec3::X, DVec3::Y, -DVec3::Z]);
     let apparent = size_mm.max_element() / (aim - centre).length().max(1e-6);
     // Midpoint sampling errs with the square of a cell's apparent size.
     let grid = ((apparent * 8.0).ceil() as u32).clamp(2, 8);

@@ -6,14 +6,19 @@
 /// the interface over the index in front of it. Total reflection gives 1.
 /// Source: Born & Wolf, Principles of Optics, §1.5.2.
 pub fn fresnel_dielectric(cos_i: f64, eta: f64) -> f64 {
-    let cos_i = cos_i.clamp(0.0, 1.0);
-    let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-    if sin2_t >= 1.0 {
+    let c = cos_i.clamp(0.0, 1.0);
+    // With k = eta² − 1 and g = eta cos_t, both amplitudes are multiples of k: the usual
+    // differences cancel in f32 at indices near 1, and 1 − sin² loses a grazing ray.
+    let k = (eta - 1.0) * (eta + 1.0);
+    let g2 = k + c * c;
+    if g2 <= 0.0 {
         return 1.0;
     }
-    let cos_t = (1.0 - sin2_t).sqrt();
-    let r_s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    let r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    let g = g2.sqrt();
+    let s = c + g;
+    let p = (k + 1.0) * c + g;
+    let r_s = k / (s * s);
+    let r_p = k * ((k + 2.0) * c * c - 1.0) / (p * p);
     0.5 * (r_s * r_s + r_p * r_p)
 }
 

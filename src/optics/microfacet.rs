@@ -152,6 +152,7 @@ mod tests {
         assert_eq!(directional_albedo(0.5, 0.0, 1.5, 8).1, 1.0);
         assert!(directional_albedo(0.5, 0.01, 1.5, 32).1 > 0.999);
         let rough = directional_albedo(0.5, 1.0, 1.5, 64).1;
-        assert!((0.5..0.8).contains(&rough), "{rough}");
+        // Half a mirror's light at 60° needs a second bounce when the facets are this steep.
+        assert!((0.4..0.5).contains(&rough), "{rough}");
     }
 }

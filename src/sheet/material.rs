@@ -35,8 +35,6 @@ pub struct PaperMaps {
     pub normal: Option<Handle<Image>>,
     pub roughness: Option<Handle<Image>>,
     pub outline: Option<Handle<Image>>,
-    /// The tabulated interface, see [`super::upload::interface_image`].
-    pub interface: Option<Handle<Image>>,
     pub overlays: Vec<Handle<Image>>,
 }
 
@@ -62,13 +60,7 @@ impl PaperMaterial {
     /// Binding and image of every texture in the layout.
     fn textures(&self) -> impl Iterator<Item = (u32, Option<&Handle<Image>>)> {
         let maps = &self.maps;
-        let fixed = [
-            &maps.albedo,
-            &maps.normal,
-            &maps.roughness,
-            &maps.outline,
-            &maps.interface,
-        ];
+        let fixed = [&maps.albedo, &maps.normal, &maps.roughness, &maps.outline];
         let overlays = (0..MAX_OVERLAYS).map(|i| maps.overlays.get(i));
         (2..)
             .zip(fixed.map(Option::as_ref))
@@ -119,9 +111,7 @@ impl AsBindGroup for PaperMaterial {
                     let image = images
                         .get(handle)
                         .ok_or(AsBindGroupError::RetryNextUpdate)?;
-                    if binding != 6 {
-                        map_sampler = &image.sampler;
-                    }
+                    map_sampler = &image.sampler;
                     image
                 }
             };
@@ -144,11 +134,9 @@ impl AsBindGroup for PaperMaterial {
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
         let stages = ShaderStages::VERTEX_FRAGMENT;
         let map = texture_2d(TextureSampleType::Float { filterable: true });
-        let table = texture_2d(TextureSampleType::Float { filterable: false });
         let mut entries = vec![
             uniform_buffer::<PaperUniform>(false).build(0, stages),
             sampler(SamplerBindingType::Filtering).build(1, ShaderStages::FRAGMENT),
-            table.build(6, ShaderStages::FRAGMENT),
         ];
         let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
         entries.extend(
@@ -201,6 +189,9 @@ impl Material for PaperMaterial {
             ("SHARED_UV", terms.shared_uv),
             ("AMBIENT", terms.ambient),
             ("AREA_LAMPS", terms.area_lamps),
+            ("DISTANT_LAMPS", terms.distant_lamps),
+            ("ONE_LAMP", terms.one_lamp),
+            ("PARALLEL_EYE", terms.parallel_eye),
             ("OVERLAYS", terms.overlays > 0),
             ("DITHER", dither),
         ]

@@ -7,7 +7,10 @@ use glam::{DAffine2, DMat4, DQuat, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 use crate::{
     manifest::exhibit::{MAX_LAMPS, MAX_OVERLAYS},
     maps::Coding,
-    optics::lamp::{DISTANCE2_MIN_MM2, Light, Shape},
+    optics::{
+        lamp::{DISTANCE2_MIN_MM2, Light, Shape},
+        table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
+    },
 };
 
 /// Cosine below every cosine: a lamp without a beam shines fully everywhere.
@@ -119,6 +122,30 @@ impl MapPlace {
     }
 }
 
+/// Twin of `InterfaceTable`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct InterfaceUniform {
+    pub t: [Vec4; MU_TERMS],
+    pub lost: [Vec4; LOST_TERMS],
+    pub compensation: Vec4,
+    pub t_mean: Vec4,
+    pub capture: Vec4,
+}
+
+impl InterfaceUniform {
+    /// Narrows `table`.
+    pub fn new(table: &InterfaceTable) -> Self {
+        let narrow = |over_alpha: AlphaPolynomial| DVec4::from_array(over_alpha).as_vec4();
+        Self {
+            t: table.t.map(narrow),
+            lost: table.lost.map(narrow),
+            compensation: narrow(table.compensation),
+            t_mean: narrow(table.t_mean),
+            capture: narrow(table.capture),
+        }
+    }
+}
+
 /// Twin of `Paper`.
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
 pub struct PaperUniform {
@@ -141,6 +168,7 @@ pub struct PaperUniform {
     pub normal_place: MapPlace,
     pub roughness_place: MapPlace,
     pub outline_place: MapPlace,
+    pub interface_table: InterfaceUniform,
     pub lights: [LightUniform; MAX_LAMPS],
     pub overlays: [MapPlace; MAX_OVERLAYS],
 }

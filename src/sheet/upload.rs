@@ -1,4 +1,4 @@
-//! Maps and tables as textures.
+//! Maps as textures.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -6,10 +6,7 @@ use bevy::{
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 
-use crate::{
-    maps::{Pyramid, Texels},
-    optics::table::{ALPHA_NODES, InterfaceTable, MU_NODES},
-};
+use crate::maps::{Pyramid, Texels};
 
 /// A map with its mip chain, filtered linearly; `anisotropy` 1 samples exactly as the
 /// closed-form tests expect, 16 keeps tilted sheets sharp.
@@ -53,38 +50,6 @@ fn format(pyramid: &Pyramid) -> TextureFormat {
         (Texels::Half(_), 2) => TextureFormat::Rg16Float,
         (Texels::Half(_), _) => TextureFormat::Rgba16Float,
     }
-}
-
-/// The nodes of an interface, one row for each roughness and its means in the last column;
-/// with `alpha`, one row at that roughness.
-pub fn interface_image(table: &InterfaceTable, alpha: Option<f64>) -> Image {
-    let alphas: Vec<f64> = match alpha {
-        Some(alpha) => vec![alpha],
-        None => (0..ALPHA_NODES)
-            .map(|j| j as f64 / (ALPHA_NODES - 1) as f64)
-            .collect(),
-    };
-    let mut values: Vec<f32> = Vec::new();
-    for &alpha in &alphas {
-        for i in 0..MU_NODES {
-            let node = table.at(crate::optics::table::node_mu(i), alpha);
-            values.extend([node.t as f32, node.lost as f32, 0.0, 0.0]);
-        }
-        let mean = table.mean_at(alpha);
-        values.extend([
-            mean.compensation as f32,
-            mean.t_mean as f32,
-            mean.capture as f32,
-            0.0,
-        ]);
-    }
-    let mut image = texture(
-        MU_NODES as u32 + 1,
-        alphas.len() as u32,
-        TextureFormat::Rgba32Float,
-    );
-    image.data = Some(values.iter().flat_map(|v| v.to_le_bytes()).collect());
-    image
 }
 
 fn texture(width: u32, height: u32, format: TextureFormat) -> Image {

@@ -12,7 +12,6 @@ use crate::{
     manifest::exhibit::{HeightMap, OverlayKind, Surface},
     maps::{self, Coding, MapError, Pyramid, normal_coding},
     needs::MapUse,
-    optics::table::InterfaceTable,
     sheet::{mesh::SideSurface, upload},
 };
 
@@ -71,7 +70,6 @@ pub struct Library {
     entries: Vec<(Request, Entry)>,
     /// What could not be decoded, one line each.
     pub faults: Vec<String>,
-    tables: Vec<([f64; 2], Arc<InterfaceTable>)>,
     anisotropy: u16,
     /// Arrivals of an earlier exhibit are dropped.
     generation: u64,
@@ -87,7 +85,6 @@ impl Library {
         Self {
             entries: Vec::new(),
             faults: Vec::new(),
-            tables: Vec::new(),
             anisotropy,
             generation: 0,
             sender,
@@ -148,17 +145,6 @@ impl Library {
                 wake();
             }
         });
-    }
-
-    /// The interface of a surface, computed once.
-    pub fn interface(&mut self, index: f64, specular: f64) -> Arc<InterfaceTable> {
-        let key = [index, specular];
-        if let Some((_, table)) = self.tables.iter().find(|(known, _)| *known == key) {
-            return table.clone();
-        }
-        let table = Arc::new(InterfaceTable::new(index, specular));
-        self.tables.push((key, table.clone()));
-        table
     }
 }
 

@@ -10,17 +10,17 @@ use super::{
 use crate::{
     manifest::{
         exhibit::{Drawing, SideName},
-        eye::Eye,
         lighting::Lighting,
     },
     maps::Coding,
     needs::{MapUse, Needs, SideNeeds},
-    optics::{fresnel::normal_reflectance, microfacet::ALPHA_MIN, tier::Tier},
+    optics::{
+        fresnel::normal_reflectance, microfacet::ALPHA_MIN, table::InterfaceTable, tier::Tier,
+    },
     sheet::{
         PaperMaps, PaperMaterial,
         mesh::SideSurface,
-        uniform::{MapPlace, PaperUniform},
-        upload,
+        uniform::{InterfaceUniform, MapPlace, PaperUniform},
     },
 };
 
@@ -71,7 +71,6 @@ impl Arranged {
 pub struct Supplies<'w> {
     library: ResMut<'w, Library>,
     waker: Option<Res<'w, Waker>>,
-    images: ResMut<'w, Assets<Image>>,
     meshes: ResMut<'w, Assets<Mesh>>,
     materials: ResMut<'w, Assets<PaperMaterial>>,
 }
@@ -87,7 +86,6 @@ pub fn arrange(
     let Supplies {
         mut library,
         waker,
-        mut images,
         mut meshes,
         mut materials,
     } = supplies;
@@ -127,16 +125,10 @@ pub fn arrange(
                     Held::Surface(_) => None,
                 })
                 .unzip();
-            let table = library
-                .bypass_change_detection()
-                .interface(drawing.paper.index, drawing.paper.specular);
-            let alpha = (!side.terms.roughness_map).then_some(drawing.paper.roughness);
-            let interface = (side.terms.tier == Tier::Gallery)
-                .then(|| images.add(upload::interface_image(&table, alpha)));
             let material = materials.add(PaperMaterial {
                 paper: constants(drawing, side, &codings),
                 terms: side.terms,
-                maps: bound(side, images_of_side, interface),
+                maps: bound(side, images_of_side),
                 dither: arranged.dither,
             });
             let mesh = meshes.add(side_surface(&surface, drawing, side.side).mesh());
@@ -183,6 +175,14 @@ fn constants(drawing: &Drawing, side: &SideNeeds, codings: &[Coding]) -> PaperUn
         size: drawing.size_mm.as_vec2(),
         ..PaperUniform::default()
     };
+    if side.terms.tier == Tier::Gallery {
+        let table = if side.terms.roughness_map {
+            InterfaceTable::new(paper.index, paper.specular)
+        } else {
+            InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular)
+        };
+        uniform.interface_table = InterfaceUniform::new(&table);
+    }
     // With shared coordinates, the vertex shader reads the albedo's place for every map.
     if let Some(first) = side.maps.first() {
         uniform.albedo_place = MapPlace::new(first.file().uv_from_side);
@@ -201,15 +201,8 @@ fn constants(drawing: &Drawing, side: &SideNeeds, codings: &[Coding]) -> PaperUn
     uniform
 }
 
-fn bound(
-    side: &SideNeeds,
-    images: Vec<Handle<Image>>,
-    interface: Option<Handle<Image>>,
-) -> PaperMaps {
-    let mut maps = PaperMaps {
-        interface,
-        ..PaperMaps::default()
-    };
+fn bound(side: &SideNeeds, images: Vec<Handle<Image>>) -> PaperMaps {
+    let mut maps = PaperMaps::default();
     for (map, image) in side.maps.iter().zip(images) {
         match map {
             MapUse::Albedo(_) => maps.albedo = Some(image),
@@ -238,7 +231,7 @@ fn place(
     lighting: &Lighting,
 ) {
     let table_from_local: DQuat = shown.pose * drawing.rest_pose(side.name).inverse();
-    let eye = Eye::new(&shown.scene.camera, drawing.size_mm);
+    let eye = shown.eye();
     let place: DVec4 = eye.place();
     let table_from_local_matrix = DMat4::from_quat(table_from_local);
     uniform.set_eye(
