@@ -167,9 +167,10 @@ fn brdf_gallery(
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_dielectric(g.cos_d, s.eta);
+    let albedo = min(s.albedo, vec3(1.0 / (mean.t_mean * mean.capture)));
     let diffuse = at_i.t * at_o.t * mean.capture * INV_PI;
     let compensated = mean.compensation * at_i.lost * at_o.lost;
-    return s.albedo * diffuse + vec3(s.specular * lobe + compensated);
+    return albedo * diffuse + vec3(s.specular * lobe + compensated);
 }
 
 // Twins of src/optics/lamp.rs. A lamp of any shape in one layout, narrowed on the CPU by
@@ -209,13 +210,34 @@ fn light_punctual(light: Light, p: vec3<f32>) -> Incidence {
     return Incidence(l, light.amount * (beam / max(distance_squared, light.distance_squared_min)));
 }
 
+// Nodes and weights of the rules of 2, 3, 4 and 5 points.
+const GAUSS_LEGENDRE = array<vec2<f32>, 14>(
+    vec2(-0.5773502691896257, 0.5),
+    vec2(0.5773502691896257, 0.5),
+    vec2(-0.7745966692414834, 0.2777777777777778),
+    vec2(0.0, 0.4444444444444444),
+    vec2(0.7745966692414834, 0.2777777777777778),
+    vec2(-0.8611363115940526, 0.1739274225687269),
+    vec2(-0.3399810435848563, 0.3260725774312731),
+    vec2(0.3399810435848563, 0.3260725774312731),
+    vec2(0.8611363115940526, 0.1739274225687269),
+    vec2(-0.9061798459386640, 0.1184634425280945),
+    vec2(-0.5384693101056831, 0.2393143352496832),
+    vec2(0.0, 0.2844444444444444),
+    vec2(0.5384693101056831, 0.2393143352496832),
+    vec2(0.9061798459386640, 0.1184634425280945),
+);
+
+fn gauss_legendre(grid: u32, i: u32) -> vec2<f32> {
+    return GAUSS_LEGENDRE[grid * (grid - 1u) / 2u - 1u + i];
+}
+
 fn light_rectangle(light: Light, p: vec3<f32>, i: u32) -> Incidence {
-    let grid = f32(light.grid);
-    let u = (2.0 * f32(i % light.grid) + 1.0) / grid - 1.0;
-    let v = (2.0 * f32(i / light.grid) + 1.0) / grid - 1.0;
-    let towards = light.place + light.half_edge_u * u + light.half_edge_v * v - p;
+    let u = gauss_legendre(light.grid, i % light.grid);
+    let v = gauss_legendre(light.grid, i / light.grid);
+    let towards = light.place + light.half_edge_u * u.x + light.half_edge_v * v.x - p;
     let distance_squared = dot(towards, towards);
     let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
-    let emits = max(-dot(light.axis, l), 0.0) / (grid * grid);
+    let emits = max(-dot(light.axis, l), 0.0) * u.y * v.y;
     return Incidence(l, light.amount * (emits / max(distance_squared, light.distance_squared_min)));
 }

@@ -181,7 +181,7 @@ fn side_needs(
         .lamps
         .iter()
         .map(|&lamp| &exhibit.lamps[lamp].kind)
-        .filter(|kind| is_shown(kind))
+        .filter(|kind| kind.is_shown())
         .collect();
     terms.area_lamps = tier != Tier::Draft
         && shown
@@ -249,17 +249,6 @@ fn side_needs(
         side: name,
         terms,
         maps,
-    }
-}
-
-/// Whether this version can light a scene with such a lamp.
-pub fn is_shown(kind: &LampKind) -> bool {
-    match kind {
-        LampKind::Distant { .. }
-        | LampKind::Point { .. }
-        | LampKind::Spot { .. }
-        | LampKind::Rectangle { .. } => true,
-        LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => false,
     }
 }
 

@@ -7,7 +7,6 @@ use bevy::{
     asset::RenderAssetUsages,
     camera::RenderTarget,
     core_pipeline::tonemapping::Tonemapping,
-    light::cluster::{ClusterConfig, GlobalClusterSettings},
     prelude::*,
     render::{
         RenderApp, RenderPlugin,
@@ -25,7 +24,11 @@ use bevy::{
 
 use crate::{
     device::{self, NoDevice},
-    stage::{Arranged, Library, Shown, StagePlugin, TABLE, legend::TextCamera},
+    stage::{
+        Arranged, Library, Shown, StagePlugin,
+        camera::{camera_bundle, without_clusters},
+        legend::TextCamera,
+    },
 };
 
 /// Why there is no picture.
@@ -296,26 +299,6 @@ impl Darkroom {
         }
         Ok(())
     }
-}
-
-/// Bevy's clustered lights are not used; without this they cost a pass a frame.
-pub fn without_clusters(mut settings: ResMut<GlobalClusterSettings>) {
-    settings.gpu_clustering = None;
-}
-
-/// The camera that draws the sheet. Its projection is not used: the sheet's shader has the
-/// eye's own, in f64 until it is narrowed.
-pub fn camera_bundle() -> impl Bundle {
-    (
-        Camera3d::default(),
-        Camera {
-            clear_color: ClearColorConfig::Custom(Color::linear_rgb(TABLE, TABLE, TABLE)),
-            ..default()
-        },
-        ClusterConfig::None,
-        Tonemapping::None,
-        Msaa::Off,
-    )
 }
 
 const PICTURE: TextureFormat = TextureFormat::Rgba32Float;

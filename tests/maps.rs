@@ -20,10 +20,13 @@ mod levels;
 mod paper;
 #[path = "maps/registration.rs"]
 mod registration;
+#[path = "support/show_through.rs"]
+mod show_through;
 
 use std::path::PathBuf;
 
 use recto::maps::{Level, Pyramid};
+use show_through::{correlation, mean};
 
 /// A folder that lives as long as the test.
 fn folder() -> tempfile::TempDir {
@@ -38,23 +41,6 @@ fn channel(pyramid: &Pyramid, level: usize, channel: usize) -> Vec<f32> {
         .step_by(stride)
         .map(|i| texels.get(i).expect("inside"))
         .collect()
-}
-
-fn mean(values: &[f32]) -> f64 {
-    values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len() as f64
-}
-
-/// Pearson's correlation coefficient.
-fn correlation(a: &[f32], b: &[f32]) -> f64 {
-    let (mean_a, mean_b) = (mean(a), mean(b));
-    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
-    for (&a, &b) in a.iter().zip(b) {
-        let (a, b) = (f64::from(a) - mean_a, f64::from(b) - mean_b);
-        ab += a * b;
-        aa += a * a;
-        bb += b * b;
-    }
-    ab / (aa * bb).sqrt()
 }
 
 /// Every file below a folder, in order.

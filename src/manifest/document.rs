@@ -137,15 +137,16 @@ pub(crate) fn read_text(file: &Path) -> Result<String, Faults> {
     }
     let bytes = fs::read(file).map_err(unreadable)?;
     String::from_utf8(bytes).map_err(|error| {
-        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let byte = error.as_bytes()[valid.len()];
+        let valid = error.utf8_error().valid_up_to();
+        let byte = error.as_bytes()[valid];
+        let valid = String::from_utf8_lossy(&error.as_bytes()[..valid]);
         let words = Words::new(
             format!("the byte 0x{byte:02x}, which is not UTF-8"),
             "text in UTF-8",
             "save the file again with the encoding UTF-8",
         );
         Faults::from(Fault {
-            place: Some(place_in(&String::from_utf8_lossy(valid), valid.len())),
+            place: Some(place_in(&valid, &line_starts(&valid), valid.len())),
             ..words.of_file(file)
         })
     })
@@ -155,6 +156,8 @@ pub(crate) fn read_text(file: &Path) -> Result<String, Faults> {
 pub(crate) struct Document<'t> {
     file: PathBuf,
     text: &'t str,
+    /// The first byte of each line.
+    lines: Vec<usize>,
     root: Spanned<DeValue<'t>>,
 }
 
@@ -169,12 +172,18 @@ impl<'t> Document<'t> {
         let document = Self {
             file: file.to_owned(),
             text,
+            lines: line_starts(text),
             root: Spanned::new(span, DeValue::Table(table.into_inner())),
         };
         match Faults::new(document.syntax_faults(&errors)) {
             Some(faults) => Err(faults),
             None => Ok(document),
         }
+    }
+
+    /// The file that it was read from.
+    pub fn file(&self) -> &Path {
+        &self.file
     }
 
     /// The table of the whole document.
@@ -194,7 +203,11 @@ impl<'t> Document<'t> {
                 _ => value.start,
             };
         });
-        place_in(self.text, start)
+        self.place_of(start)
+    }
+
+    fn place_of(&self, byte: usize) -> Place {
+        place_in(self.text, &self.lines, byte)
     }
 
     /// Whether there is a value at `trail`.
@@ -263,7 +276,7 @@ impl<'t> Document<'t> {
 
     fn syntax_faults(&self, errors: &[Error]) -> Vec<Fault> {
         let fault = |error: &Error, words: Words| Fault {
-            place: error.span().map(|span| place_in(self.text, span.start)),
+            place: error.span().map(|span| self.place_of(span.start)),
             ..words.of_file(&self.file)
         };
         // Too deep nesting leaves everything behind it unread and makes many faults of one.
@@ -348,13 +361,19 @@ impl Words {
     }
 }
 
-/// The line and column of a byte of `text`.
-fn place_in(text: &str, byte: usize) -> Place {
-    let before = &text[..text.floor_char_boundary(byte)];
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+fn line_starts(text: &str) -> Vec<usize> {
+    let after_newlines = text.match_indices('\n').map(|(newline, _)| newline + 1);
+    std::iter::once(0).chain(after_newlines).collect()
+}
+
+/// The line and column of a byte of `text`, whose `lines` begin at these bytes.
+fn place_in(text: &str, lines: &[usize], byte: usize) -> Place {
+    let byte = text.floor_char_boundary(byte);
+    let line = lines.partition_point(|start| *start <= byte).max(1);
+    let start = lines.get(line - 1).copied().unwrap_or(0);
     Place {
-        line: before.matches('\n').count() + 1,
-        column: before[line_start..].chars().count() + 1,
+        line,
+        column: text[start..byte].chars().count() + 1,
     }
 }
 

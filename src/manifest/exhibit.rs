@@ -303,6 +303,19 @@ pub enum LampKind {
     LightTable { luminance: Nits },
 }
 
+impl LampKind {
+    /// Whether this version shows the light of such a lamp.
+    pub fn is_shown(&self) -> bool {
+        match self {
+            Self::Distant { .. }
+            | Self::Point { .. }
+            | Self::Spot { .. }
+            | Self::Rectangle { .. } => true,
+            Self::Disc { .. } | Self::Ies { .. } | Self::LightTable { .. } => false,
+        }
+    }
+}
+
 /// Everything that decides a picture: the one saved state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {

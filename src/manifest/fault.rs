@@ -130,12 +130,15 @@ pub(super) fn sort(faults: &mut [Fault]) {
 pub fn nearest<'w>(word: &str, words: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
     /// Comparing is quadratic, and nobody misspells one word at such length.
     const LONGEST: usize = 64;
+    /// Nobody means one of so many either.
+    const MOST: usize = 1000;
     if word.chars().count() > LONGEST {
         return None;
     }
     let lower = word.to_lowercase();
     words
         .into_iter()
+        .take(MOST)
         .map(|candidate| {
             (
                 strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()),

@@ -8,7 +8,7 @@ use super::exhibit::{Exhibit, LampKind, Scene};
 use crate::{
     colour,
     optics::{
-        lamp::{Light, Shape},
+        lamp::{Light, Shape, grid_for},
         lamp_units::area_axes,
     },
     units::{Degrees, Kelvin},
@@ -141,14 +141,12 @@ fn rectangle(centre: DVec3, aim: DVec3, size_mm: DVec2) -> Shape {
     // A lamp that aims at itself was refused; straight down is as good as any.
     let [u, v, axis] = area_axes(centre, aim).unwrap_or([DVec3::X, DVec3::Y, -DVec3::Z]);
     let apparent = size_mm.max_element() / (aim - centre).length().max(1e-6);
-    // Midpoint sampling errs with the square of a cell's apparent size.
-    let grid = ((apparent * 8.0).ceil() as u32).clamp(2, 8);
     let (half_u, half_v) = (u * (size_mm.x / 2.0), v * (size_mm.y / 2.0));
     Shape::Rectangle {
         centre,
         axis,
         half_u,
         half_v,
-        grid,
+        grid: grid_for(apparent),
     }
 }

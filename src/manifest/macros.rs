@@ -153,8 +153,7 @@ macro_rules! record {
             const KEYS: &'static [&'static str] = &[$(stringify!($r),)* $(stringify!($o),)*];
             const RULES: &'static [$crate::manifest::decode::Rule] = &[$($rule),*];
 
-            // A record may have no required or no optional keys.
-            #[allow(unused_variables)]
+            #[allow(unused_variables, reason = "a record may have no keys of one sort")]
             fn decode_fields(
                 node: &$crate::manifest::decode::Node<'_>,
                 report: &mut $crate::manifest::decode::Report<'_>,
@@ -165,7 +164,7 @@ macro_rules! record {
                 Some(Self { $($r: $r?,)* $($o,)* })
             }
 
-            #[allow(unused_variables)]
+            #[allow(unused_variables, reason = "a record may have no keys of one sort")]
             fn describe_fields(
                 object: &mut $crate::manifest::decode::ObjectSchema,
                 generator: &mut schemars::SchemaGenerator,

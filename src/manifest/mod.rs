@@ -9,6 +9,8 @@
 //! | plain data → [`Exhibit`], with files, references and units | `validate` |
 //! | what is wrong, where, and what to do | [`Fault`], [`Faults`] |
 //! | a starting manifest from one picture | [`create`] |
+//! | a lamp or camera in one line | `spec` |
+//! | a scene changed by options of a command | [`overrides`] |
 
 mod create;
 mod decode;
@@ -19,6 +21,7 @@ mod fault;
 pub mod frames;
 pub mod lighting;
 mod macros;
+pub mod overrides;
 mod query;
 pub mod raw;
 mod schema;

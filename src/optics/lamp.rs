@@ -5,6 +5,43 @@ use glam::DVec3;
 /// Squared distances (mm²) are never taken smaller: 1e-4 m².
 pub const DISTANCE2_MIN_MM2: f64 = 100.0;
 
+/// Points along each edge that a rectangle can be sampled at.
+pub const GRIDS: std::ops::RangeInclusive<u32> = 2..=5;
+
+/// Nodes on [−1, 1] and weights (of sum 1) of the rules of 2, 3, 4 and 5 points, one after the
+/// other (Abramowitz & Stegun, table 25.4).
+const GAUSS_LEGENDRE: [[f64; 2]; 14] = [
+    [-0.5773502691896257, 0.5],
+    [0.5773502691896257, 0.5],
+    [-0.7745966692414834, 0.2777777777777778],
+    [0.0, 0.4444444444444444],
+    [0.7745966692414834, 0.2777777777777778],
+    [-0.8611363115940526, 0.1739274225687269],
+    [-0.3399810435848563, 0.3260725774312731],
+    [0.3399810435848563, 0.3260725774312731],
+    [0.8611363115940526, 0.1739274225687269],
+    [-0.906179845938664, 0.1184634425280945],
+    [-0.5384693101056831, 0.2393143352496832],
+    [0.0, 0.2844444444444444],
+    [0.5384693101056831, 0.2393143352496832],
+    [0.906179845938664, 0.1184634425280945],
+];
+
+/// Node on [−1, 1] and weight of point `i` of the rule of `grid` points, `grid` in [`GRIDS`].
+pub fn gauss_legendre(grid: u32, i: u32) -> [f64; 2] {
+    GAUSS_LEGENDRE[(grid * (grid - 1) / 2 - 1 + i) as usize]
+}
+
+/// How finely to sample a rectangle whose longer edge is `apparent` times its distance.
+pub fn grid_for(apparent: f64) -> u32 {
+    match apparent {
+        a if a < 0.3 => 2,
+        a if a < 1.0 => 3,
+        a if a < 2.0 => 4,
+        _ => 5,
+    }
+}
+
 /// A lamp as the shader sees it: pre-exposed, and placed in any one frame in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
@@ -33,7 +70,7 @@ pub enum Shape {
         cos_falloff: f64,
     },
     /// `half_u`, `half_v` span half the rectangle; it shines along `axis` only. Sampled at
-    /// `grid` × `grid` midpoints.
+    /// `grid` × `grid` points of a Gauss-Legendre rule, `grid` in [`GRIDS`].
     Rectangle {
         centre: DVec3,
         axis: DVec3,
@@ -77,17 +114,15 @@ impl Light {
                 half_u,
                 half_v,
                 grid,
-            } => {
-                let share = 1.0 / f64::from(grid * grid);
-                let midpoint = |i: u32| (2.0 * f64::from(i) + 1.0) / f64::from(grid) - 1.0;
-                (0..grid * grid)
-                    .map(|i| {
-                        let (u, v) = (midpoint(i % grid), midpoint(i / grid));
-                        let sample = centre + half_u * u + half_v * v;
-                        self.inverse_square(sample - p, |l| share * (-axis.dot(l)).max(0.0))
-                    })
-                    .collect()
-            }
+            } => (0..grid * grid)
+                .map(|i| {
+                    let [u, weight_u] = gauss_legendre(grid, i % grid);
+                    let [v, weight_v] = gauss_legendre(grid, i / grid);
+                    let sample = centre + half_u * u + half_v * v;
+                    let share = weight_u * weight_v;
+                    self.inverse_square(sample - p, |l| share * (-axis.dot(l)).max(0.0))
+                })
+                .collect(),
         }
     }
 
@@ -222,7 +257,7 @@ mod tests {
                 axis: -DVec3::Z,
                 half_u,
                 half_v,
-                grid: 16,
+                grid: 4,
             };
             let area = 200.0 * 40.0;
             let sampled = light(shape).illuminance(DVec3::ZERO, DVec3::Z).x * area;

@@ -160,7 +160,8 @@ pub fn brdf_draft(s: &Surface, g: &Facing) -> DVec3 {
 }
 
 /// The gallery tier: what the interface reflects, the diffuser underneath does not get, on the
-/// way in and on the way out; without the cosine. `at_i`, `at_o` and `mean` are the tabulated
+/// way in and on the way out; without the cosine. No photograph of a sheet that gives back all
+/// light is whiter than 1/(t̄·capture), so the albedo is taken no higher. `at_i`, `at_o` and `mean` are the tabulated
 /// interface at both cosines and the surface's roughness.
 pub fn brdf_gallery(
     s: &Surface,
@@ -172,9 +173,12 @@ pub fn brdf_gallery(
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_dielectric(g.cos_d, s.eta);
+    let albedo = s
+        .albedo
+        .min(DVec3::splat(1.0 / (mean.t_mean * mean.capture)));
     let diffuse = at_i.t * at_o.t * mean.capture / PI;
     let compensated = mean.compensation * at_i.lost * at_o.lost;
-    s.albedo * diffuse + DVec3::splat(s.specular * lobe + compensated)
+    albedo * diffuse + DVec3::splat(s.specular * lobe + compensated)
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! From the scene that is shown to entities: loads what [`Needs`] asks for, spawns the sheet's
 //! sides, and keeps their lamps, eye and overlays true to [`Shown`].
 
+pub mod camera;
 pub mod legend;
 pub mod library;
+pub mod reload;
 mod sides;
 
 use std::sync::Arc;
@@ -14,7 +16,10 @@ pub use library::{Library, Waker};
 pub use sides::Arranged;
 
 use crate::{
-    manifest::exhibit::{Exhibit, Scene, Wording},
+    manifest::{
+        exhibit::{Exhibit, Scene, Wording},
+        eye::Eye,
+    },
     optics::tier::Tier,
     sheet::SheetPlugin,
 };
@@ -49,6 +54,12 @@ impl Shown {
             both_sides: false,
             aspect,
         }
+    }
+
+    /// The eye of the scene's camera, for this picture's aspect.
+    pub fn eye(&self) -> Eye {
+        let size_mm = self.exhibit.drawing_of(&self.scene).size_mm;
+        Eye::new(&self.scene.camera.fitted(size_mm, self.aspect), size_mm)
     }
 
     /// `wording` in the scene's language, or as near to it as there is.

@@ -1,9 +1,12 @@
 //! A real leaf: its size from the file, and the ink of the verso seen through the recto.
 
-use rayon::prelude::*;
 use recto::maps::{self, ColourEncoding, probe};
 
-use super::{channel, support::data};
+use super::{
+    channel,
+    show_through::{PATCHES, Page, SHRINK, best_shift},
+    support::data,
+};
 use crate::test_name;
 
 #[test]
@@ -23,120 +26,23 @@ fn dpi_gives_the_physical_size() {
     }
 }
 
-/// Levels are halved twice: correlation is direct, and strokes are still wider than a pixel.
-const LEVEL: usize = 2;
-const SHRINK: i32 = 1 << LEVEL;
-
-/// One side's luminous reflectance at reduced size.
-struct Page {
-    width: usize,
-    height: usize,
-    values: Vec<f32>,
+/// A page at a quarter of its size.
+fn page(path: &std::path::Path, mirrored: bool) -> Page {
+    let level = SHRINK.ilog2() as usize;
+    let map = maps::load_colour(path, ColourEncoding::Embedded).expect("read");
+    let (width, height) = (
+        map.levels[level].width as usize,
+        map.levels[level].height as usize,
+    );
+    Page::new(width, height, &channel(&map, level, 1), mirrored)
 }
-
-impl Page {
-    /// Loads the high-passed encoded green: ink on paper without the paper's own shade.
-    fn load(path: &std::path::Path, mirrored: bool) -> Self {
-        let map = maps::load_colour(path, ColourEncoding::Embedded).expect("read");
-        let level = &map.levels[LEVEL];
-        let (width, height) = (level.width as usize, level.height as usize);
-        let mut values: Vec<f32> = channel(&map, LEVEL, 1)
-            .iter()
-            .map(|v| v.max(0.0).sqrt())
-            .collect();
-        if mirrored {
-            values.chunks_mut(width).for_each(|row| row.reverse());
-        }
-        let page = Self {
-            width,
-            height,
-            values,
-        };
-        let smooth = page.blurred(8);
-        let values = page
-            .values
-            .iter()
-            .zip(&smooth)
-            .map(|(v, s)| v - s)
-            .collect();
-        Self { values, ..page }
-    }
-
-    /// Mean over a square of ±`radius`, shrunk at the edges.
-    fn blurred(&self, radius: usize) -> Vec<f32> {
-        let line = |values: &[f32], stride: usize, count: usize, start: usize| -> Vec<f32> {
-            let mean = |i: usize| {
-                let range = i.saturating_sub(radius)..(i + radius + 1).min(count);
-                let length = range.len() as f32;
-                range.map(|k| values[start + k * stride]).sum::<f32>() / length
-            };
-            (0..count).map(mean).collect()
-        };
-        let rows: Vec<f32> = (0..self.height)
-            .flat_map(|y| line(&self.values, 1, self.width, y * self.width))
-            .collect();
-        let columns: Vec<Vec<f32>> = (0..self.width)
-            .map(|x| line(&rows, self.width, self.height, x))
-            .collect();
-        (0..rows.len())
-            .map(|i| columns[i % self.width][i / self.width])
-            .collect()
-    }
-}
-
-/// How far beyond chance the best shift of the verso under a patch of the recto correlates (in
-/// standard deviations over all shifts), and that shift in full pixels.
-fn best_shift(recto: &Page, verso: &Page, left: usize, top: usize) -> (f64, [i32; 2]) {
-    const SIDE: usize = 600 / SHRINK as usize;
-    const REACH: i32 = 200 / SHRINK;
-    // The recto's own ink is far darker than what shows through: it is noise here, so it is cut.
-    const RESIDUE: f32 = 0.03;
-    let patch: Vec<f32> = (0..SIDE * SIDE)
-        .map(|i| recto.values[(top + i / SIDE) * recto.width + left + i % SIDE])
-        .map(|v| v.clamp(-RESIDUE, RESIDUE))
-        .collect();
-    let shifts: Vec<[i32; 2]> = (-REACH / 4..=REACH / 4)
-        .flat_map(|dy| (-REACH..=REACH).map(move |dx| [dx, dy]))
-        .collect();
-    let scores: Vec<f64> = shifts
-        .par_iter()
-        .map(|&[dx, dy]| {
-            let other: Vec<f32> = (0..SIDE * SIDE)
-                .map(|i| {
-                    let x = (left + i % SIDE) as i32 - dx;
-                    let y = (top + i / SIDE) as i32 - dy;
-                    let inside = (0..verso.width as i32).contains(&x)
-                        && (0..verso.height as i32).contains(&y);
-                    if inside {
-                        verso.values[y as usize * verso.width + x as usize]
-                    } else {
-                        0.0
-                    }
-                })
-                .collect();
-            super::correlation(&patch, &other)
-        })
-        .collect();
-    let mean = scores.iter().sum::<f64>() / scores.len() as f64;
-    let variance = scores.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / scores.len() as f64;
-    let best = (0..scores.len())
-        .max_by(|&a, &b| scores[a].total_cmp(&scores[b]))
-        .expect("some");
-    (
-        (scores[best] - mean) / variance.sqrt(),
-        shifts[best].map(|v| v * SHRINK),
-    )
-}
-
-/// Patches of text, clear of the margins, in reduced pixels.
-const PATCHES: [[usize; 2]; 4] = [[150, 200], [300, 200], [150, 450], [300, 450]];
 
 #[test]
 fn the_versos_ink_shows_through_its_own_recto_only() {
     let Some(root) = data(test_name!(), "bnf_recto_verso") else {
         return;
     };
-    let side = |name: &str, mirrored| Page::load(&root.join(name), mirrored);
+    let side = |name: &str, mirrored| page(&root.join(name), mirrored);
     let verso = side("it820_3v_f12.jpg", true);
     let find = |recto: &Page| PATCHES.map(|[x, y]| best_shift(recto, &verso, x, y));
     let own = find(&side("it820_3r_f11.jpg", false));

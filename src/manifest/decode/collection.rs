@@ -26,6 +26,11 @@ impl<T, const MIN: usize, const MAX: usize> List<T, MIN, MAX> {
             .filter_map(|(i, value)| Some((i, value.as_ref()?)))
     }
 
+    /// The element with this index, unless it is at fault.
+    pub(crate) fn get(&self, index: usize) -> Option<&T> {
+        self.0.get(index)?.as_ref()
+    }
+
     /// Whether elements were left out because they are at fault.
     pub(crate) fn has_holes(&self) -> bool {
         self.0.iter().any(Option::is_none)

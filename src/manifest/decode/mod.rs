@@ -111,10 +111,15 @@ fn shorten(number: String) -> String {
     format!("{}…", number.chars().take(SHOWN).collect::<String>())
 }
 
+/// How many faults are listed: more only hide the first ones.
+const MOST_FAULTS: usize = 200;
+
 /// Collects the faults of one document.
 pub struct Report<'d> {
     document: &'d Document<'d>,
     faults: Vec<(Trail, Fault)>,
+    /// Whether there were more than are listed.
+    overflown: bool,
     /// Keys that a misspelt one probably stands for: they are not missing as well.
     meant: Vec<Trail>,
 }
@@ -124,12 +129,23 @@ impl<'d> Report<'d> {
         Self {
             document,
             faults: Vec::new(),
+            overflown: false,
             meant: Vec::new(),
         }
     }
 
     pub(crate) fn into_faults(self) -> Vec<Fault> {
-        self.faults.into_iter().map(|(_, fault)| fault).collect()
+        let more = self.overflown.then(|| {
+            let found = format!("more than {MOST_FAULTS} faults");
+            Words::new(found, "none", "correct these first").of_file(self.document.file())
+        });
+        let faults = self.faults.into_iter().map(|(_, fault)| fault);
+        more.into_iter().chain(faults).collect()
+    }
+
+    /// Whether as many faults are known as are listed, so that looking for more is idle.
+    pub(crate) fn is_full(&self) -> bool {
+        self.faults.len() >= MOST_FAULTS
     }
 
     /// Records that the value at `trail` is at fault, or that it is missing.
@@ -144,9 +160,12 @@ impl<'d> Report<'d> {
 
     /// Whether anything inside the value at `trail` is at fault.
     pub(crate) fn faulty_within(&self, trail: &Trail) -> bool {
-        self.faults
-            .iter()
-            .any(|(place, fault)| fault.severity == Severity::Error && trail.holds(place))
+        // Of what is not listed the trail is not known.
+        self.overflown
+            || self
+                .faults
+                .iter()
+                .any(|(place, fault)| fault.severity == Severity::Error && trail.holds(place))
     }
 
     /// How many faults there are so far, for [`Self::keep_written`].
@@ -171,6 +190,10 @@ impl<'d> Report<'d> {
     }
 
     fn record(&mut self, trail: &Trail, at: At, severity: Severity, words: Words) {
+        if self.is_full() {
+            self.overflown = true;
+            return;
+        }
         let fault = self.document.fault(trail, at, severity, words);
         self.faults.push((trail.clone(), fault));
     }

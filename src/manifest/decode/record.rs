@@ -58,6 +58,11 @@ pub(super) fn refuse_unknown_keys(node: &Node<'_>, known: &[&str], report: &mut 
         if known.contains(&key) {
             continue;
         }
+        if report.is_full() {
+            let words = Words::new("an unknown key", "", "");
+            report.record(&node.trail, At::Key, Severity::Error, words);
+            return;
+        }
         let absent = || {
             known
                 .iter()

@@ -14,8 +14,10 @@ use super::{
     macros::{kinds, record},
 };
 use crate::maps::{ColourEncoding, ColourMapName, MAX_WEIGHTS, NormalY};
-use lamp::RawLamp;
-use scene::{RawExposure, RawScene, RawTour};
+pub use lamp::RawLamp;
+pub use scene::{
+    RawAmbient, RawCamera, RawCompare, RawExposure, RawScene, RawShownOverlay, RawStop, RawTour,
+};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use values::{
@@ -31,19 +33,19 @@ record! {
     /// An exhibit of drawings: the file exhibit.toml.
     pub struct RawManifest {
         required {
-            /// The sheets, each below its own [[drawing]].
+            /// The sheets, each below its own `[[drawing]]`.
             drawing: List<RawDrawing, 1>,
         }
         optional {
             /// The exhibit as a whole.
             exhibit: RawExhibit,
-            /// The lamps that scenes name, each below its own [[lamp]]. Without any, one distant
+            /// The lamps that scenes name, each below its own `[[lamp]]`. Without any, one distant
             /// lamp shines from the top left at 45°.
             lamp: List<RawLamp>,
-            /// The views, each below its own [[scene]]. Without any, the recto of each drawing
+            /// The views, each below its own `[[scene]]`. Without any, the recto of each drawing
             /// is one.
             scene: List<RawScene>,
-            /// Series of scenes that run by themselves, each below its own [[tour]].
+            /// Series of scenes that run by themselves, each below its own `[[tour]]`.
             tour: List<RawTour>,
             /// How exact the pictures have to be.
             accuracy: RawAccuracy,
@@ -102,11 +104,11 @@ record! {
             verso: Complete,
             /// What shows when light comes through the sheet.
             transmission: RawTransmission,
-            /// States of conservation, each below its own [[drawing.state]].
+            /// States of conservation, each below its own `[[drawing.state]]`.
             state: List<RawState>,
-            /// Thematic maps laid over the sheet, each below its own [[drawing.overlay]].
+            /// Thematic maps laid over the sheet, each below its own `[[drawing.overlay]]`.
             overlay: List<RawOverlay>,
-            /// Places that lead to a scene, each below its own [[drawing.hotspot]].
+            /// Places that lead to a scene, each below its own `[[drawing.hotspot]]`.
             hotspot: List<RawHotspot>,
         }
         rules []

@@ -38,8 +38,8 @@ number! {
     ReliefUm = -100000.0 ..= 100000.0, "µm";
     /// A coordinate in a picture, from its left or top edge; pixel centres lie at halves.
     PixelPx = -100000.0 ..= 100000.0, "pixels";
-    /// A roughness α of the facet distribution.
-    Alpha = 0.01 ..= 1.0, "";
+    /// A roughness α of the facet distribution; no paper is smoother than a tenth.
+    Alpha = 0.1 ..= 1.0, "";
     /// A refractive index.
     RefractiveIndex = 1.0 ..= 3.0, "";
     /// A share.

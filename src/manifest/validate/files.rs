@@ -18,6 +18,9 @@ use crate::maps::{self, Header, MAX_SIDE, MapError};
 impl Validator<'_, '_> {
     /// The path of a file of the exhibit, named at `trail`.
     pub(super) fn file(&mut self, file: &FilePath, trail: &Trail) -> Option<PathBuf> {
+        if self.report.is_full() {
+            return None;
+        }
         let words = match self.inside(file) {
             Ok(path) => return Some(path),
             Err(words) => words,

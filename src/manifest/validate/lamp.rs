@@ -27,6 +27,9 @@ pub(super) const DEFAULT_ID: &str = "reference";
 /// Where a lamp stands whose distance is not given: a copy stand's arm.
 const DEFAULT_DISTANCE_MM: f64 = 600.0;
 
+/// How near to the plane of the sheet a lamp can be.
+const LOWEST_MM: f64 = 1.0;
+
 impl Validator<'_, '_> {
     /// The lamps of the manifest, or the reference lamp: distant, 1000 lx, from the top left at
     /// 45°, in the light that is shown as neutral, so that a photograph looks as it is.
@@ -183,12 +186,12 @@ impl Validator<'_, '_> {
     fn stand(&mut self, stand: &Stand, trail: &Trail) -> Option<DVec3> {
         if let Some(position) = stand.position_mm {
             let position = vector(position);
-            if position.z > 0.0 {
+            if position.z >= LOWEST_MM {
                 return Some(position);
             }
             let words = Words::new(
                 format!("a lamp {} mm above the plane of the sheet", position.z),
-                "a third coordinate above 0 mm",
+                format!("a third coordinate of at least {LOWEST_MM} mm"),
                 "raise the lamp; light through the sheet comes from kind = \"light-table\"",
             );
             self.report.fault(&trail.key("position_mm").index(2), words);

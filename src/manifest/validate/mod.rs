@@ -42,16 +42,21 @@ pub(super) fn exhibit(
     folder: &Path,
     report: &mut Report<'_>,
 ) -> Option<Exhibit> {
-    let mut validator = Validator {
-        report,
-        folder: folder.to_owned(),
-        // Where even this fails, each file of the manifest will be reported as absent.
-        real_folder: folder.canonicalize().unwrap_or_else(|_| folder.to_owned()),
-        languages: Vec::new(),
-        languages_declared: false,
-        not_shown_yet: Vec::new(),
-    };
-    validator.exhibit(raw, manifest)
+    Validator::new(folder, report).exhibit(raw, manifest)
+}
+
+impl<'r, 'd> Validator<'r, 'd> {
+    fn new(folder: &Path, report: &'r mut Report<'d>) -> Self {
+        Self {
+            report,
+            folder: folder.to_owned(),
+            // Where even this fails, each file of the manifest will be reported as absent.
+            real_folder: folder.canonicalize().unwrap_or_else(|_| folder.to_owned()),
+            languages: Vec::new(),
+            languages_declared: false,
+            not_shown_yet: Vec::new(),
+        }
+    }
 }
 
 impl Validator<'_, '_> {

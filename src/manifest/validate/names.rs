@@ -1,5 +1,7 @@
 //! Ids: each once, and every reference to one that is there.
 
+use std::collections::HashMap;
+
 use super::super::{
     decode::Pattern,
     document::{Trail, Words},
@@ -15,6 +17,8 @@ pub(super) struct Names {
     what: &'static str,
     /// With the index of each in the list.
     ids: Vec<(usize, String)>,
+    /// The index of the first element with each id.
+    indices: HashMap<String, usize>,
     /// Whether faulty elements, whose ids are unknown, are missing here.
     incomplete: bool,
 }
@@ -25,19 +29,26 @@ impl Names {
         ids: impl Iterator<Item = (usize, &'i Id)>,
         incomplete: bool,
     ) -> Self {
-        let ids = ids.map(|(i, id)| (i, id.as_str().to_owned())).collect();
-        Self {
-            what,
-            ids,
-            incomplete,
-        }
+        let ids: Vec<_> = ids.map(|(i, id)| (i, id.as_str().to_owned())).collect();
+        Self::of(what, ids, incomplete)
     }
 
     pub fn of_one(what: &'static str, id: &str) -> Self {
+        Self::of(what, vec![(0, id.to_owned())], false)
+    }
+
+    fn of(what: &'static str, ids: Vec<(usize, String)>, incomplete: bool) -> Self {
+        // In reverse, so that of two with one id the first stays.
+        let indices = ids
+            .iter()
+            .rev()
+            .map(|(index, id)| (id.clone(), *index))
+            .collect();
         Self {
             what,
-            ids: vec![(0, id.to_owned())],
-            incomplete: false,
+            ids,
+            indices,
+            incomplete,
         }
     }
 
@@ -66,10 +77,23 @@ impl Names {
 
     /// The index of the element with this id.
     pub fn position(&self, id: &str) -> Option<usize> {
-        self.ids
-            .iter()
-            .find(|(_, name)| name == id)
-            .map(|(index, _)| *index)
+        self.indices.get(id).copied()
+    }
+
+    /// The ids for a message, or the first of many.
+    pub fn listed(&self) -> String {
+        const SHOWN: usize = 20;
+        match self.ids.len().saturating_sub(SHOWN) {
+            0 => quoted_list(self.words()),
+            more => {
+                let shown: Vec<_> = self
+                    .words()
+                    .take(SHOWN)
+                    .map(|word| format!("\"{word}\""))
+                    .collect();
+                format!("{} and {more} more", shown.join(", "))
+            }
+        }
     }
 
     pub fn words(&self) -> impl Iterator<Item = &str> {
@@ -80,13 +104,10 @@ impl Names {
 impl Validator<'_, '_> {
     /// Reports every id that an earlier element of the list at `trail` has already.
     pub(super) fn unique(&mut self, names: &Names, trail: &Trail) {
-        for (position, (index, id)) in names.ids.iter().enumerate() {
-            let earlier = names.ids[..position]
-                .iter()
-                .find(|(_, earlier)| earlier == id);
-            if let Some((first, _)) = earlier {
+        for (index, id) in &names.ids {
+            if let Some(first) = names.position(id).filter(|first| first != index) {
                 let words = Words::new(
-                    format!("the id \"{id}\", which {} has already", trail.index(*first)),
+                    format!("the id \"{id}\", which {} has already", trail.index(first)),
                     "ids that differ",
                     "rename one of the two",
                 );
@@ -98,12 +119,12 @@ impl Validator<'_, '_> {
     /// The index that `id`, written at `trail`, refers to.
     pub(super) fn resolve(&mut self, id: &str, names: &Names, trail: &Trail) -> Option<usize> {
         let index = names.position(id);
-        if index.is_none() && !names.incomplete {
+        if index.is_none() && !names.incomplete && !self.report.is_full() {
             let what = names.what;
             let allowed = if names.ids.is_empty() {
                 format!("the id of a {what}, and there is none")
             } else {
-                format!("the id of a {what}: {}", quoted_list(names.words()))
+                format!("the id of a {what}: {}", names.listed())
             };
             let otherwise = format!("add a {what} with this id or correct it");
             let remedy = did_you_mean(id, names.words(), &otherwise);

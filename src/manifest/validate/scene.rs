@@ -25,6 +25,9 @@ use crate::units::{Degrees, Kelvin, Lux};
 /// How long a stop of a tour lasts that does not say.
 const DEFAULT_STOP_S: f64 = 10.0;
 
+/// How many scenes can take over from each other in a row.
+const DEEPEST_LIKE: usize = 32;
+
 /// What scenes refer to.
 struct Surroundings<'n> {
     drawings: Vec<(usize, DrawingFacts)>,
@@ -61,22 +64,28 @@ impl Validator<'_, '_> {
                 let scene = RawScene::of_drawing(&drawing.id);
                 self.scene(&scene, &trail.index(i), &surroundings)
             });
-            return scenes.collect();
+            // All are looked at before the first fault ends it.
+            return scenes.collect::<Vec<_>>().into_iter().collect();
         };
         // Scenes that others take over from come first, so that what is at fault in them is
         // reported there alone.
         let mut chains: Vec<Vec<usize>> = Vec::new();
         for (i, scene) in scenes.iter() {
+            if self.report.is_full() {
+                return None;
+            }
             chains.extend(self.chain(i, scene, scenes, &trail, scene_names));
         }
         chains.sort_by_key(Vec::len);
         let mut done: Vec<(usize, Option<Scene>)> = Vec::new();
         for chain in &chains {
             let Some(&own) = chain.first() else { continue };
+            if self.report.is_full() {
+                return None;
+            }
             let merged = chain
                 .iter()
-                .filter_map(|index| scenes.iter().find(|(i, _)| i == index))
-                .map(|(_, scene)| scene.clone())
+                .filter_map(|index| scenes.get(*index).cloned())
                 .reduce(RawScene::like);
             let Some(merged) = merged else { continue };
             let inherits_faults = chain[1..]
@@ -134,11 +143,17 @@ impl Validator<'_, '_> {
                 }
                 return None;
             }
+            if chain.len() == DEEPEST_LIKE {
+                let words = Words::new(
+                    format!("more than {DEEPEST_LIKE} scenes like one another in a row"),
+                    "fewer",
+                    "give this scene its own keys",
+                );
+                self.report.fault(&trail.index(start).key("like"), words);
+                return None;
+            }
             chain.push(parent);
-            current = scenes
-                .iter()
-                .find(|(i, _)| *i == parent)
-                .map(|(_, scene)| scene)?;
+            current = scenes.get(parent)?;
         }
         Some(chain)
     }
@@ -162,7 +177,11 @@ impl Validator<'_, '_> {
             self.report.fault(&trail.key("lamps"), words);
         }
         let drawing = self.scene_drawing(raw, trail, around)?;
-        let facts = &around.drawings.iter().find(|(i, _)| *i == drawing)?.1;
+        let position = around
+            .drawings
+            .binary_search_by_key(&drawing, |(index, _)| *index)
+            .ok()?;
+        let facts = &around.drawings[position].1;
         let side = raw.side.unwrap_or_default();
         let state = match &raw.state {
             Some(id) if id.as_str() != NO_STATE => self
@@ -206,7 +225,7 @@ impl Validator<'_, '_> {
         }
         let only = names.only();
         if only.is_none() && names.words().nth(1).is_some() {
-            let allowed = super::super::fault::quoted_list(names.words());
+            let allowed = names.listed();
             self.report
                 .fault(&trail, Words::new("nothing", allowed, "add drawing"));
         }
@@ -246,8 +265,10 @@ impl Validator<'_, '_> {
                 shown = None;
                 continue;
             };
-            let on = facts.overlay_sides.iter().find(|(i, _)| *i == index);
-            if on.is_some_and(|(_, on)| *on != side) {
+            let on = facts
+                .overlay_sides
+                .binary_search_by_key(&index, |(index, _)| *index);
+            if on.is_ok_and(|position| facts.overlay_sides[position].1 != side) {
                 let words = Words::new(
                     format!("\"{}\", an overlay of the other side", id.as_str()),
                     format!("overlays of the {}", side.word()),
@@ -335,7 +356,12 @@ impl Validator<'_, '_> {
         }
     }
 
-    fn camera(&mut self, raw: Option<&RawCamera>, trail: &Trail, size_mm: DVec2) -> Camera {
+    pub(super) fn camera(
+        &mut self,
+        raw: Option<&RawCamera>,
+        trail: &Trail,
+        size_mm: DVec2,
+    ) -> Camera {
         let whole = Camera::whole_sheet(size_mm);
         let Some(raw) = raw else { return whole };
         let centre_mm = raw

@@ -1,0 +1,72 @@
+//! Commands of the contract that this version does not have yet: they say so, and never succeed.
+
+use std::ffi::OsString;
+
+use clap::Subcommand;
+
+use super::Failure;
+
+/// What help says about them.
+pub const HELP: &str = "Not in this version yet: reference, bsdf, tradeoff, prepare, import, \
+                        export, register, supervise, publish.";
+
+/// Whatever follows the command.
+#[derive(clap::Args)]
+#[command(disable_help_flag = true)]
+pub struct Anything {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    _arguments: Vec<OsString>,
+}
+
+macro_rules! commands {
+    ($($(#[doc = $doc:literal])+ $name:ident = $word:literal,)+) => {
+        #[derive(Subcommand)]
+        pub enum Command {
+            $($(#[doc = $doc])+ #[command(hide = true)] $name(Anything),)+
+        }
+
+        impl Command {
+            fn word(&self) -> &'static str {
+                match self {
+                    $(Self::$name(_) => $word,)+
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    /// Render by the f64 integrator
+    Reference = "reference",
+    /// Evaluate a medium's BSDF
+    Bsdf = "bsdf",
+    /// Error against reference and cost of every tier
+    Tradeoff = "tradeoff",
+    /// Make maps from photographs
+    Prepare = "prepare",
+    /// Import from IIIF, Relight or RTI
+    Import = "import",
+    /// Export to IIIF
+    Export = "export",
+    /// Propose control points
+    Register = "register",
+    /// Keep a wall running
+    Supervise = "supervise",
+    /// Publish an exhibit
+    Publish = "publish",
+}
+
+impl Command {
+    /// Why nothing was done.
+    pub fn refusal(&self) -> Failure {
+        not_yet(&format!("the command {}", self.word()))
+    }
+}
+
+/// Why `what`, a part of the contract, was not done.
+pub fn not_yet(what: &str) -> Failure {
+    Failure::Usage(format!(
+        "{what} comes with a later version; {} does not have it yet",
+        env!("CARGO_PKG_VERSION")
+    ))
+}

@@ -1,0 +1,85 @@
+//! The command line. Results go to standard output and words to standard error; the program
+//! ends with 0 (done), 1 (the input is at fault), 2 (wrong usage) or 3 (no graphics device).
+
+mod check;
+mod failure;
+mod later;
+mod new;
+mod options;
+mod output;
+mod render;
+pub mod report;
+mod sample;
+mod schema;
+mod show;
+
+use std::{ffi::OsString, path::Path};
+
+use clap::{Parser, Subcommand};
+
+use crate::manifest::{Exhibit, Fault};
+pub use failure::Failure;
+
+/// Shows old-master drawings as if the sheet lay in your hands.
+#[derive(Parser)]
+#[command(
+    name = "recto",
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = later::HELP
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    show: show::Arguments,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Open an exhibit in a window
+    #[command(after_help = show::keys())]
+    Show(show::Arguments),
+    /// Render scenes into files, without a window
+    Render(render::Arguments),
+    /// Name every fault of an exhibit, and what its scenes require
+    Check(check::Arguments),
+    /// Start an exhibit from one picture
+    New(new::Arguments),
+    /// Write the sample exhibits and their maps
+    Sample(sample::Arguments),
+    /// Print the JSON Schema of the manifest, for editors
+    Schema(schema::Arguments),
+    #[command(flatten)]
+    Later(later::Command),
+}
+
+/// Runs the command that `arguments`, the program's name first, ask for.
+///
+/// # Errors
+/// [`Failure`], which knows its words and its exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let arguments = Arguments::try_parse_from(arguments)?;
+    match arguments.command.unwrap_or(Command::Show(arguments.show)) {
+        Command::Show(arguments) => show::run(arguments),
+        Command::Render(arguments) => render::run(arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
+        Command::Sample(arguments) => sample::run(&arguments),
+        Command::Schema(arguments) => schema::run(&arguments),
+        Command::Later(command) => Err(command.refusal()),
+    }
+}
+
+/// Reads an exhibit and says its warnings.
+fn read(path: &Path) -> Result<Exhibit, Failure> {
+    let (exhibit, warnings) = Exhibit::read(path)?;
+    warn(&warnings);
+    Ok(exhibit)
+}
+
+fn warn(warnings: &[Fault]) {
+    for warning in warnings {
+        output::say(warning);
+    }
+}

@@ -1,0 +1,106 @@
+//! Options that several commands share, and how their values are read.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+
+use super::Failure;
+use crate::{
+    manifest::{SideName, overrides::Overrides},
+    maps::MAX_SIDE,
+    optics::tier::Tier,
+};
+
+/// What is rendered.
+#[derive(clap::Args)]
+pub struct SceneArguments {
+    /// The scene; without it, the first
+    #[arg(long, value_name = "ID")]
+    scene: Option<String>,
+    /// Another drawing, the whole sheet of it, in the light of the scene
+    #[arg(long, value_name = "ID")]
+    drawing: Option<String>,
+    /// The side
+    #[arg(long, value_name = "SIDE", value_parser = side())]
+    side: Option<SideName>,
+    /// The state of conservation, or none
+    #[arg(long, value_name = "ID")]
+    state: Option<String>,
+    /// An overlay instead of the scene's own; several from the lowest; opacity 0 to 1
+    #[arg(long, value_name = "ID[=OPACITY]")]
+    overlay: Vec<String>,
+    /// A lamp instead of the scene's own: the id of one, or what a manifest says of one, such as
+    /// kind=distant,lux_at_sheet=1000,elevation_deg=45,azimuth_deg=135
+    #[arg(long, value_name = "SPEC")]
+    lamp: Vec<String>,
+    /// What to change in the camera, as in a manifest, such as centre_mm=92x60,width_mm=80; or
+    /// true-size@PPI, for a display of so many pixels per inch
+    #[arg(long, value_name = "SPEC")]
+    camera: Option<String>,
+    /// The language of the legend, by its BCP 47 tag
+    #[arg(long, value_name = "TAG")]
+    language: Option<String>,
+}
+
+impl SceneArguments {
+    pub fn overrides(self) -> Overrides {
+        Overrides {
+            scene: self.scene,
+            drawing: self.drawing,
+            side: self.side,
+            state: self.state,
+            overlays: self.overlay,
+            lamps: self.lamp,
+            camera: self.camera,
+            language: self.language,
+        }
+    }
+}
+
+fn side() -> impl TypedValueParser<Value = SideName> {
+    const SIDES: [SideName; 2] = [SideName::Recto, SideName::Verso];
+    PossibleValuesParser::new(SIDES.map(SideName::word)).try_map(|word| {
+        let named = |side: &SideName| side.word() == word;
+        SIDES.into_iter().find(named).ok_or("no such side")
+    })
+}
+
+/// The names of all tiers.
+pub fn tier() -> impl TypedValueParser<Value = Tier> {
+    PossibleValuesParser::new(Tier::ALL.map(Tier::name)).try_map(|name| name.parse::<Tier>())
+}
+
+/// Refuses tiers that this version does not have.
+pub fn shown(tier: Tier) -> Result<Tier, Failure> {
+    if tier.is_shown() {
+        return Ok(tier);
+    }
+    let shown = Tier::ALL.into_iter().filter(|tier| tier.is_shown());
+    Err(Failure::Usage(format!(
+        "the tier {tier} comes with a later version; choose one of {}",
+        shown.map(Tier::name).collect::<Vec<_>>().join(", ")
+    )))
+}
+
+/// `WIDTHxHEIGHT` in pixels.
+pub fn size_px(text: &str) -> Result<[u32; 2], String> {
+    pair(text)
+        .filter(|size: &[u32; 2]| size.iter().all(|side| (1..=MAX_SIDE).contains(side)))
+        .ok_or_else(|| {
+            format!("write width and height in pixels, 1 to {MAX_SIDE} each, such as 1920x1080")
+        })
+}
+
+/// `WIDTHxHEIGHT` in mm.
+pub fn size_mm(text: &str) -> Result<[f64; 2], String> {
+    pair(text).ok_or_else(|| "write width and height in mm, such as 285x194".to_owned())
+}
+
+/// `WIDTHxHEIGHT` of a display in mm.
+pub fn display_mm(text: &str) -> Result<[f64; 2], String> {
+    let size = pair(text).filter(|size: &[f64; 2]| size.iter().all(|mm| (10.0..=1e5).contains(mm)));
+    size.ok_or_else(|| "write width and height in mm, such as 598x336".to_owned())
+}
+
+fn pair<T: std::str::FromStr>(text: &str) -> Option<[T; 2]> {
+    let (width, height) = text.split_once(['x', '×'])?;
+    Some([width.trim().parse().ok()?, height.trim().parse().ok()?])
+}

@@ -1,0 +1,78 @@
+//! The two streams, neither of which has to be open, and files that are yet to be written.
+
+use std::{
+    fmt::Display,
+    fs,
+    io::{self, Write},
+    path::Path,
+};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::Failure;
+
+/// Writes a result and a newline to standard output.
+pub fn result(text: impl Display) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "{text}")?;
+    Ok(out.flush()?)
+}
+
+/// Writes words and a newline to standard error.
+pub fn say(words: impl Display) {
+    // Nobody is left to be told that standard error is closed.
+    let _ = writeln!(io::stderr().lock(), "{words}");
+}
+
+/// A bar on standard error, where that is a terminal.
+pub fn progress(steps: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {wide_msg}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(steps).with_style(style)
+}
+
+/// Finds out, before any work is done, whether the file `path` could be written.
+pub fn can_write_file(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(refused(path, "is a folder; name a file in it"));
+    }
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    can_write_into(folder)
+}
+
+/// Finds out whether the folder `path` could be made, if it is absent, and written to.
+pub fn can_write_folder(path: &Path) -> Result<(), Failure> {
+    let mut existing = path;
+    while !existing.exists() {
+        existing = match existing.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+    }
+    can_write_into(existing)
+}
+
+/// Makes a folder and those above it.
+pub fn make_folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path)
+        .map_err(|error| refused(path, &format!("the folder cannot be made: {error}")))
+}
+
+fn can_write_into(folder: &Path) -> Result<(), Failure> {
+    if !folder.exists() {
+        return Err(refused(folder, "no such folder; make it first"));
+    }
+    if !folder.is_dir() {
+        return Err(refused(folder, "is not a folder"));
+    }
+    tempfile::tempfile_in(folder)
+        .map(drop)
+        .map_err(|error| refused(folder, &format!("cannot be written to: {error}")))
+}
+
+fn refused(path: &Path, why: &str) -> Failure {
+    Failure::Input(format!("{}: {why}", path.display()).into())
+}

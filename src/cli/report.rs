@@ -1,0 +1,351 @@
+//! What `recto check` says of a sound exhibit: what its scenes require and why, the memory it
+//! takes, what anchors the exposure, and where maps and constants come from.
+
+use std::{
+    collections::BTreeMap,
+    f64::consts::PI,
+    fmt::{self, Display},
+    path::{Path, PathBuf},
+};
+
+use glam::DVec3;
+use serde::Serialize;
+
+use crate::{
+    colour,
+    manifest::{Accuracy, Exhibit, Fault, Faults, Scene, SideName, Source},
+    needs::Needs,
+    optics::tier::Tier,
+};
+
+/// The tier that requirements are told for, which is the one used where none is asked for.
+const TIER: Tier = Tier::Gallery;
+/// What there is to say of a tier that meets the accuracy asked for.
+const ACCURACY: &str = "Which tier meets this is told by a later version, which can measure it.";
+
+/// A faulty exhibit, for programs.
+#[derive(Serialize)]
+pub struct Refused<'f> {
+    sound: bool,
+    faults: &'f Faults,
+}
+
+impl<'f> Refused<'f> {
+    pub fn new(faults: &'f Faults) -> Self {
+        Self {
+            sound: false,
+            faults,
+        }
+    }
+}
+
+/// A sound exhibit. `{}` is short, `{:#}` explains.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    pub sound: bool,
+    pub manifest: PathBuf,
+    pub drawings: usize,
+    pub tours: usize,
+    pub warnings: Vec<Fault>,
+    pub tier: &'static str,
+    pub scenes: Vec<SceneReport>,
+    pub sources: Vec<SourceReport>,
+    pub not_shown_yet: Vec<String>,
+    pub accuracy: AccuracyReport,
+}
+
+/// What one scene requires.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneReport {
+    pub id: String,
+    pub drawing: String,
+    pub side: SideName,
+    pub reasons: Vec<String>,
+    pub maps: Vec<MapReport>,
+    /// Bytes of its maps on the graphics device.
+    pub gpu_bytes: u64,
+    /// The same in a window, where the sheet can be turned over.
+    pub gpu_bytes_in_window: u64,
+    pub exposure: ExposureReport,
+}
+
+/// A map that a scene needs.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapReport {
+    pub side: SideName,
+    pub role: &'static str,
+    pub file: PathBuf,
+    pub size_px: [u32; 2],
+    pub gpu_bytes: u64,
+}
+
+/// What is shown at which level.
+#[derive(Clone, Debug, Serialize)]
+pub struct ExposureReport {
+    /// A perfect diffuser at this illuminance is shown at `level`.
+    pub lux: f64,
+    pub level: f64,
+    /// Whether the manifest says so; otherwise `light` adds up to it.
+    pub declared: bool,
+    /// The illuminance that each lamp, and the room, gives to the centre of the flat sheet.
+    pub light: Vec<LightReport>,
+}
+
+/// The light of one lamp or of the room.
+#[derive(Clone, Debug, Serialize)]
+pub struct LightReport {
+    pub lamp: String,
+    pub lux: f64,
+}
+
+/// Where a map or constant comes from.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct SourceReport {
+    pub drawing: String,
+    pub what: String,
+    pub source: &'static str,
+}
+
+/// What the curator asks for.
+#[derive(Clone, Debug, Serialize)]
+pub struct AccuracyReport {
+    pub max_delta_e: f64,
+    pub frame_ms: f64,
+    pub tier: &'static str,
+}
+
+impl Report {
+    /// Of an exhibit that was read with `warnings`.
+    pub fn new(exhibit: &Exhibit, warnings: Vec<Fault>) -> Self {
+        let Accuracy {
+            max_delta_e,
+            frame_ms,
+        } = exhibit.accuracy;
+        Self {
+            sound: true,
+            manifest: exhibit.manifest.clone(),
+            drawings: exhibit.drawings.len(),
+            tours: exhibit.tours.len(),
+            warnings,
+            tier: TIER.name(),
+            scenes: exhibit
+                .scenes
+                .iter()
+                .map(|scene| SceneReport::new(exhibit, scene))
+                .collect(),
+            sources: sources(exhibit),
+            not_shown_yet: exhibit.not_shown_yet.clone(),
+            accuracy: AccuracyReport {
+                max_delta_e,
+                frame_ms,
+                tier: ACCURACY,
+            },
+        }
+    }
+}
+
+impl SceneReport {
+    fn new(exhibit: &Exhibit, scene: &Scene) -> Self {
+        let needs = Needs::of(exhibit, scene, TIER, false);
+        let maps = needs.sides.iter().flat_map(|side| {
+            side.maps.iter().map(|map| MapReport {
+                side: side.side,
+                role: map.role(),
+                file: relative(exhibit, &map.file().path),
+                size_px: map.file().size,
+                gpu_bytes: map.gpu_bytes(),
+            })
+        });
+        Self {
+            id: scene.id.clone(),
+            drawing: exhibit.drawing_of(scene).id.clone(),
+            side: scene.side,
+            maps: maps.collect(),
+            gpu_bytes: needs.gpu_bytes(),
+            gpu_bytes_in_window: Needs::of(exhibit, scene, TIER, true).gpu_bytes(),
+            exposure: ExposureReport::new(exhibit, scene),
+            reasons: needs.reasons,
+        }
+    }
+}
+
+impl ExposureReport {
+    fn new(exhibit: &Exhibit, scene: &Scene) -> Self {
+        let lighting = exhibit.lighting(scene);
+        // Amounts are exposed; this takes them back to lx.
+        let lux = |exposed: DVec3| colour::luminance(exposed.into()) * lighting.reference_lux / PI;
+        let lamps = scene
+            .lamps
+            .iter()
+            .map(|lamp| &exhibit.lamps[*lamp])
+            .filter(|lamp| lamp.kind.is_shown());
+        let mut light: Vec<LightReport> = lamps
+            .zip(&lighting.lights)
+            .map(|(lamp, light)| LightReport {
+                lamp: lamp.id.clone(),
+                lux: lux(light.illuminance(DVec3::ZERO, DVec3::Z)),
+            })
+            .collect();
+        if scene.ambient.illuminance.0 > 0.0 {
+            light.push(LightReport {
+                lamp: "the room".to_owned(),
+                lux: scene.ambient.illuminance.0,
+            });
+        }
+        Self {
+            lux: lighting.reference_lux,
+            level: scene.exposure.level,
+            declared: scene.exposure.illuminance.is_some(),
+            light,
+        }
+    }
+}
+
+fn sources(exhibit: &Exhibit) -> Vec<SourceReport> {
+    let mut all = Vec::new();
+    for drawing in &exhibit.drawings {
+        let report = |what: String, source: Source| SourceReport {
+            drawing: drawing.id.clone(),
+            what,
+            source: word(source),
+        };
+        let paper = &drawing.paper;
+        let constants = format!(
+            "paper: {}, {} thick, roughness {}, index {}",
+            paper.kind, paper.thickness, paper.roughness, paper.index
+        );
+        all.push(report(constants, paper.source));
+        // One file may serve several states; what is said of it last holds.
+        let files: BTreeMap<PathBuf, Source> = drawing
+            .maps()
+            .map(|map| (relative(exhibit, &map.path), map.source))
+            .collect();
+        let maps = files.into_iter();
+        all.extend(maps.map(|(file, source)| report(file.display().to_string(), source)));
+    }
+    all
+}
+
+fn relative(exhibit: &Exhibit, path: &Path) -> PathBuf {
+    path.strip_prefix(&exhibit.folder)
+        .unwrap_or(path)
+        .to_owned()
+}
+
+fn word(source: Source) -> &'static str {
+    match source {
+        Source::Measured => "measured",
+        Source::Fitted => "fitted",
+        Source::Assumed => "assumed",
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: sound: {}, {}, {}, {}",
+            self.manifest.display(),
+            counted(self.drawings, "drawing"),
+            counted(self.scenes.len(), "scene"),
+            counted(self.tours, "tour"),
+            counted(self.warnings.len(), "warning"),
+        )?;
+        let most = self.scenes.iter().max_by_key(|s| s.gpu_bytes_in_window);
+        if let Some(scene) = most {
+            write!(
+                f,
+                "\nGraphics memory for maps: {} at most, in a window (scene {})",
+                mebibytes(scene.gpu_bytes_in_window),
+                scene.id
+            )?;
+        }
+        if f.alternate() {
+            for scene in &self.scenes {
+                write!(f, "\n\n{scene}")?;
+            }
+            f.write_str("\n\nWhere things come from")?;
+            for source in &self.sources {
+                write!(
+                    f,
+                    "\n  {}: {}: {}",
+                    source.drawing, source.what, source.source
+                )?;
+            }
+            f.write_str("\n")?;
+        }
+        write!(
+            f,
+            "\nAccuracy asked for: ΔE00 {} within {} ms a frame. {}",
+            self.accuracy.max_delta_e, self.accuracy.frame_ms, self.accuracy.tier
+        )?;
+        if !self.not_shown_yet.is_empty() {
+            f.write_str("\nRead and checked, but not shown by this version:")?;
+        }
+        for sentence in &self.not_shown_yet {
+            write!(f, "\n  {sentence}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Display for SceneReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "Scene {} ({}, {})",
+            self.id,
+            self.drawing,
+            self.side.word()
+        )?;
+        for reason in &self.reasons {
+            write!(f, "\n  {reason}")?;
+        }
+        for map in &self.maps {
+            let [width, height] = map.size_px;
+            write!(
+                f,
+                "\n  {}: {} map, {}, {width} × {height} pixels, {}",
+                map.side.word(),
+                map.role,
+                map.file.display(),
+                mebibytes(map.gpu_bytes)
+            )?;
+        }
+        write!(
+            f,
+            "\n  memory for maps: {}, in a window {}",
+            mebibytes(self.gpu_bytes),
+            mebibytes(self.gpu_bytes_in_window)
+        )?;
+        let ExposureReport {
+            lux,
+            level,
+            declared,
+            light,
+        } = &self.exposure;
+        let anchor = if *declared {
+            "as the manifest says; its light gives to the centre of the sheet"
+        } else {
+            "which its light gives to the centre of the sheet"
+        };
+        write!(
+            f,
+            "\n  exposure: a perfect white at {lux:.1} lx is shown at level {level}, {anchor}:"
+        )?;
+        for (i, LightReport { lamp, lux }) in light.iter().enumerate() {
+            let comma = if i > 0 { "," } else { "" };
+            write!(f, "{comma} {lamp} {lux:.1} lx")?;
+        }
+        Ok(())
+    }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{plural}")
+}
+
+fn mebibytes(bytes: u64) -> String {
+    format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
+}

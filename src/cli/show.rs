@@ -1,0 +1,91 @@
+//! `recto show`, and `recto` alone
+
+use std::path::PathBuf;
+
+use super::{Failure, later, options};
+use crate::{
+    optics::tier::Tier,
+    visitor::{self, KEYS, ShowError, ShowOptions},
+};
+
+/// The exhibit that is shown where none is named.
+const SAMPLE: &str = "exhibits/landscape";
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The exhibit's folder, or its manifest; without it, the sample exhibit
+    exhibit: Option<PathBuf>,
+    /// The scene to begin with
+    #[arg(long, value_name = "ID")]
+    scene: Option<String>,
+    /// How exactly light is calculated
+    #[arg(long, default_value_t, value_parser = options::tier())]
+    tier: Tier,
+    /// Width and height of the display's visible area in mm, for true size
+    #[arg(long, value_name = "WxH", value_parser = options::display_mm)]
+    display_mm: Option<[f64; 2]>,
+    /// Width and height of the window in pixels
+    #[arg(long, value_name = "WxH", value_parser = options::size_px)]
+    size: Option<[u32; 2]>,
+    /// Fill the display
+    #[arg(long)]
+    fullscreen: bool,
+    /// For a public wall (not in this version yet)
+    #[arg(long)]
+    kiosk: bool,
+    /// The place and its displays (not in this version yet)
+    #[arg(long, value_name = "FILE")]
+    installation: Option<PathBuf>,
+}
+
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    if arguments.kiosk {
+        return Err(later::not_yet("--kiosk"));
+    }
+    if arguments.installation.is_some() {
+        return Err(later::not_yet("--installation"));
+    }
+    let options = ShowOptions {
+        scene: arguments.scene,
+        tier: options::shown(arguments.tier)?,
+        display_mm: arguments.display_mm,
+        size: arguments.size,
+        fullscreen: arguments.fullscreen,
+    };
+    let path = arguments.exhibit.or_else(sample_exhibit).ok_or_else(|| {
+        Failure::Usage(
+            "name an exhibit; the sample exhibit is not here, but `recto sample exhibits` writes it"
+                .to_owned(),
+        )
+    })?;
+    match visitor::show(&path, &options)? {
+        0 => Ok(()),
+        code => Err(Failure::Ended(code)),
+    }
+}
+
+/// What the keys do, for help.
+pub fn keys() -> String {
+    let rows = KEYS.map(|(keys, action)| format!("  {keys:38}{action}"));
+    format!("In the window:\n{}", rows.join("\n"))
+}
+
+/// The sample exhibit below the current folder, or beside the program.
+fn sample_exhibit() -> Option<PathBuf> {
+    let program = std::env::current_exe().ok();
+    let beside = program.as_deref().and_then(|program| program.parent());
+    [Some(PathBuf::new()), beside.map(PathBuf::from)]
+        .into_iter()
+        .flatten()
+        .map(|folder| folder.join(SAMPLE))
+        .find(|exhibit| exhibit.is_dir())
+}
+
+impl From<ShowError> for Failure {
+    fn from(error: ShowError) -> Self {
+        match error {
+            ShowError::Faults(faults) => faults.into(),
+            error => Self::Device(Box::new(error)),
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! The quiet caption at the lower left, and the list of keys.
+
+use bevy::prelude::*;
+
+use super::hand::Hand;
+use crate::stage::{
+    Shown,
+    legend::{Face, TextCamera, line, text_size},
+};
+
+/// Widest line, in heights of its text.
+const WIDTH: f32 = 36.0;
+/// The title is larger than the rest by this factor.
+const TITLE: f32 = 1.25;
+/// The caption's text, against that of the legend.
+const QUIET: f32 = 0.85;
+
+/// What the keys do, for the list of them and for the manual.
+pub const KEYS: [(&str, &str); 14] = [
+    ("drag", "turn the sheet; move it when zoomed in"),
+    ("wheel, + −", "zoom"),
+    ("double click", "true size and back"),
+    ("arrows", "move when zoomed in"),
+    ("F", "turn the sheet over"),
+    ("right drag, L + drag, Shift + arrows", "move the lamp"),
+    ("1  2  3", "lamp overhead, at 45°, raking"),
+    ("S, Shift + S", "next state, back"),
+    ("O", "overlays: none, each, all"),
+    ("[  ]", "fainter, stronger overlays"),
+    ("N, P", "next scene, back"),
+    ("H", "the scene as it was"),
+    ("C", "caption"),
+    ("F11, Esc", "full screen, quit"),
+];
+
+/// Which texts are wanted.
+#[derive(Resource, Debug)]
+pub struct Texts {
+    pub caption: bool,
+    pub keys: bool,
+}
+
+impl Default for Texts {
+    fn default() -> Self {
+        Self {
+            caption: true,
+            keys: false,
+        }
+    }
+}
+
+/// A text that is drawn anew when it changes.
+#[derive(Component)]
+pub struct Panel;
+
+/// Everything that decides the texts' pixels.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawn {
+    caption: Vec<String>,
+    keys: bool,
+    size: f32,
+}
+
+/// Draws the texts that changed.
+pub fn draw(
+    mut commands: Commands,
+    (shown, hand, texts): (Res<Shown>, Res<Hand>, Res<Texts>),
+    face: Option<Res<Face>>,
+    cameras: Query<(Entity, &TextCamera)>,
+    panels: Query<Entity, With<Panel>>,
+    mut drawn: Local<Drawn>,
+) {
+    let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
+        return;
+    };
+    let size = text_size(text.height) * QUIET;
+    let wanted = Drawn {
+        caption: if texts.caption {
+            lines(&shown, &hand)
+        } else {
+            Vec::new()
+        },
+        keys: texts.keys,
+        size,
+    };
+    if *drawn == wanted {
+        return;
+    }
+    for panel in &panels {
+        commands.entity(panel).despawn();
+    }
+    if !wanted.caption.is_empty() {
+        let node = Node {
+            left: Val::Px(size),
+            bottom: Val::Px(size),
+            ..panel_node(size)
+        };
+        commands
+            .spawn((Panel, UiTargetCamera(camera), node, BackgroundColor(DARK)))
+            .with_children(|rows| {
+                for (row, text) in wanted.caption.iter().enumerate() {
+                    let font = if row == 0 { size * TITLE } else { size };
+                    let wrapped = Node {
+                        max_width: Val::Px(size * WIDTH),
+                        ..default()
+                    };
+                    rows.spawn((line(text.clone(), &face.0, font), wrapped));
+                }
+            });
+    }
+    if wanted.keys {
+        let node = Node {
+            left: Val::Px(size),
+            top: Val::Px(size),
+            ..panel_node(size)
+        };
+        commands
+            .spawn((Panel, UiTargetCamera(camera), node, BackgroundColor(DARK)))
+            .with_children(|rows| {
+                for (keys, what) in KEYS {
+                    rows.spawn(Node::default()).with_children(|row| {
+                        row.spawn(Node {
+                            width: Val::Px(size * 19.0),
+                            ..default()
+                        })
+                        .with_child(line(keys.into(), &face.0, size));
+                        row.spawn(line(what.into(), &face.0, size));
+                    });
+                }
+            });
+    }
+    *drawn = wanted;
+}
+
+/// Light text on this keeps a contrast above 4.5:1 over the whitest paper.
+const DARK: Color = Color::srgba(0.05, 0.05, 0.05, 0.93);
+
+fn panel_node(size: f32) -> Node {
+    Node {
+        position_type: PositionType::Absolute,
+        padding: UiRect::all(Val::Px(size * 0.7)),
+        row_gap: Val::Px(size * 0.35),
+        flex_direction: FlexDirection::Column,
+        ..default()
+    }
+}
+
+/// The caption's lines, the title first.
+pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
+    let drawing = shown.exhibit.drawing_of(&shown.scene);
+    let say = |wording| shown.text(wording).unwrap_or_default();
+    let title = match say(&drawing.title) {
+        "" => say(&shown.exhibit.title),
+        title => title,
+    };
+    let mut lines = vec![joined(&[title, &drawing.date])];
+    lines.push(say(&drawing.caption).into());
+    lines.push(joined(&[&drawing.credit, &drawing.inventory]));
+    lines.push(say(&shown.scene.text).into());
+    let state = shown.scene.state.map(|state| &drawing.states[state]);
+    let state = state.map_or("", |state| match say(&state.title) {
+        "" => &state.id,
+        title => title,
+    });
+    let lamp = hand.lamp().map(|lamp| lamp.words()).unwrap_or_default();
+    let size = match hand.at_true_size() {
+        Some(true) => "true size",
+        Some(false) => "true size, if the display has 96 pixels an inch",
+        None => "",
+    };
+    lines.push(joined(&[shown.scene.side.word(), state, &lamp, size]));
+    lines.retain(|line| !line.is_empty());
+    lines
+}
+
+fn joined(parts: &[&str]) -> String {
+    let said: Vec<&str> = parts
+        .iter()
+        .copied()
+        .filter(|part| !part.is_empty())
+        .collect();
+    said.join(" · ")
+}

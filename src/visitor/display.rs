@@ -1,0 +1,106 @@
+//! Whether there is a display, found out before the window system's library would panic for
+//! want of one.
+
+use std::ffi::OsStr;
+
+/// No display that a window could open on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "no display: {reason}. `recto render` writes pictures into files without one, and on Debian \
+     or Ubuntu `xvfb-run recto show …` opens the window on a virtual one"
+)]
+pub struct NoDisplay {
+    pub(super) reason: String,
+}
+
+/// Looks for the display that a window will open on.
+///
+/// # Errors
+/// [`NoDisplay`] if none is named or none answers.
+pub fn probe() -> Result<(), NoDisplay> {
+    if !cfg!(target_os = "linux") {
+        return Ok(());
+    }
+    let named = |name| std::env::var_os(name).filter(|value| !value.is_empty());
+    if cfg!(feature = "wayland") && named("WAYLAND_DISPLAY").is_some() {
+        return Ok(());
+    }
+    match named("DISPLAY") {
+        Some(display) => answers(&display),
+        None => Err(NoDisplay {
+            reason: "DISPLAY is not set".into(),
+        }),
+    }
+}
+
+/// Whether an X server listens where `[host]:number[.screen]` says.
+fn answers(display: &OsStr) -> Result<(), NoDisplay> {
+    let no_display = |why: &str| NoDisplay {
+        reason: format!("DISPLAY is {display:?}, {why}"),
+    };
+    let place = display.to_str().and_then(|text| text.rsplit_once(':'));
+    let number = |(host, rest): (&str, &str)| {
+        let number: u16 = rest.split('.').next()?.parse().ok()?;
+        Some((host.to_owned(), number))
+    };
+    let (host, number) = place
+        .and_then(number)
+        .ok_or_else(|| no_display("which names none"))?;
+    if connects(&host, number) {
+        Ok(())
+    } else {
+        Err(no_display("and nothing answers there"))
+    }
+}
+
+#[cfg(unix)]
+fn connects(host: &str, number: u16) -> bool {
+    use std::{net::TcpStream, os::unix::net::UnixStream};
+
+    /// X servers listen on this port and those above it.
+    const PORT: u16 = 6000;
+    if !matches!(host, "" | "unix") && !host.starts_with('/') {
+        return TcpStream::connect((host, PORT.saturating_add(number))).is_ok();
+    }
+    let path = format!("/tmp/.X11-unix/X{number}");
+    UnixStream::connect(&path).is_ok() || connects_abstract(&path)
+}
+
+#[cfg(target_os = "linux")]
+fn connects_abstract(path: &str) -> bool {
+    use std::os::{
+        linux::net::SocketAddrExt,
+        unix::net::{SocketAddr, UnixStream},
+    };
+
+    SocketAddr::from_abstract_name(path)
+        .and_then(|address| UnixStream::connect_addr(&address))
+        .is_ok()
+}
+
+#[cfg(all(unix, not(target_os = "linux")))]
+fn connects_abstract(_: &str) -> bool {
+    false
+}
+
+#[cfg(not(unix))]
+fn connects(_: &str, _: u16) -> bool {
+    true
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_display_that_is_not_there_is_told() {
+        for (display, words) in [
+            ("nonsense", "names none"),
+            (":", "names none"),
+            (":54321.0", "nothing answers"),
+        ] {
+            let error = answers(OsStr::new(display)).expect_err(display);
+            assert!(error.to_string().contains(words), "{error}");
+        }
+    }
+}

@@ -1,0 +1,530 @@
+//! The hand that holds the sheet: one state, changed by intents and by time, and what is to be
+//! shown of it. No device, window or engine is needed to move it.
+
+use std::{collections::BTreeSet, f64::consts::PI, sync::Arc};
+
+use bevy::prelude::Resource;
+use glam::{DQuat, DVec2, DVec3};
+
+use super::{
+    intent::Intent,
+    lamp::LampPlace,
+    motion::{self, Speed},
+    view::{View, wrapped},
+};
+use crate::{
+    manifest::{
+        exhibit::{Camera, Drawing, Exhibit, Scene, SideName},
+        eye::Eye,
+        frames::other_side,
+    },
+    optics::tier::Tier,
+    stage::Shown,
+};
+
+/// A hand turns the sheet no further, in degrees: its other side stays hidden.
+const FARTHEST_TURN_DEG: f64 = 60.0;
+/// Degrees by which the sheet turns when a hand crosses half the picture.
+const TURN_DEG: f64 = 70.0;
+/// Seen at this angle from straight above, in degrees, a sheet can show its other side.
+const STEEP_DEG: f64 = 75.0;
+/// Narrowest picture, in mm.
+const NARROWEST_MM: f64 = 2.0;
+/// A picture narrower than the whole sheet by this factor is zoomed in.
+const ZOOMED: f64 = 0.97;
+/// A zoom this near its target, relatively, has arrived.
+const ARRIVED: f64 = 1e-3;
+/// A turned sheet this near to rest, in degrees and degrees per second, rests.
+const REST_DEG: f64 = 0.02;
+/// Longest step of a sheet that is being turned over, in seconds.
+const FLIP_STEP_S: f64 = 0.1;
+/// A glide that would go on by less of the picture's width has ended.
+const GLIDE_END: f64 = 5e-4;
+
+/// What a drag does, decided when it begins to move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Grip {
+    Undecided,
+    Turn,
+    Move,
+}
+
+/// How large the picture is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picture {
+    /// Width over height.
+    pub aspect: f64,
+    /// Width in mm on the display, which shows the sheet at true size when that many mm of it
+    /// fill the picture.
+    pub width_mm: f64,
+    /// Whether the display's size is known or guessed.
+    pub measured: bool,
+}
+
+/// What the hand holds.
+#[derive(Resource, Debug)]
+pub struct Hand {
+    exhibit: Arc<Exhibit>,
+    /// The same with the lamp where the hand put it.
+    lit: Arc<Exhibit>,
+    scene: usize,
+    view: View,
+    tier: Tier,
+    picture: Picture,
+    /// Motion is reduced to cuts.
+    calm: bool,
+    /// The cheapest tier is good enough just now.
+    hurried: bool,
+    /// How the sheet is turned from rest: a rotation vector in the table's plane, in degrees.
+    turn: DVec2,
+    /// Degrees a second while it turns, mm a second while the picture moves.
+    speed: Speed,
+    grip: Option<Grip>,
+    /// Width in mm that the picture is coming to, and about which place.
+    zoom: Option<(f64, DVec2)>,
+    /// Width in mm before true size.
+    before_true_size: Option<f64>,
+    /// Seconds since the sheet began to be turned over.
+    flip: Option<f64>,
+    /// Both sides are loaded and stay so.
+    both_sides: bool,
+    /// The last scene and view that could be shown.
+    good: Option<(usize, View)>,
+    /// Scenes that could not be shown.
+    refused: BTreeSet<usize>,
+}
+
+impl Hand {
+    /// The scene of `exhibit` with this index, as written. `calm` reduces motion to cuts.
+    pub fn new(
+        exhibit: Arc<Exhibit>,
+        scene: usize,
+        tier: Tier,
+        picture: Picture,
+        calm: bool,
+    ) -> Self {
+        let view = View::of(&exhibit, &exhibit.scenes[scene]);
+        Self {
+            lit: exhibit.clone(),
+            exhibit,
+            scene,
+            view,
+            tier,
+            picture,
+            calm,
+            hurried: false,
+            turn: DVec2::ZERO,
+            speed: Speed::default(),
+            grip: None,
+            zoom: None,
+            before_true_size: None,
+            flip: None,
+            both_sides: false,
+            good: None,
+            refused: BTreeSet::new(),
+        }
+    }
+
+    /// The exhibit was read again: the same scene by its id, or the first, and of the view what
+    /// is still there.
+    pub fn replace(&mut self, exhibit: Arc<Exhibit>) {
+        let was = self.written().clone();
+        let (scene, is) = exhibit
+            .scene(&was.id)
+            .unwrap_or_else(|| (0, &exhibit.scenes[0]));
+        if is.id == was.id {
+            self.view = self.view.carried((&self.exhibit, &was), (&exhibit, is));
+        } else {
+            self.view = View::of(&exhibit, is);
+            self.still();
+        }
+        // A sheet that is being turned over may no longer have that other side.
+        self.flip = None;
+        self.scene = scene;
+        self.exhibit = exhibit;
+        self.good = None;
+        self.refused.clear();
+        self.relight();
+    }
+
+    /// The picture has another size now.
+    pub fn resize(&mut self, picture: Picture) {
+        self.picture = picture;
+    }
+
+    /// Changes what an intent is about.
+    pub fn apply(&mut self, intent: Intent) {
+        match intent {
+            Intent::Take => {
+                self.speed = Speed::default();
+                self.zoom = None;
+                self.grip = Some(Grip::Undecided);
+            }
+            Intent::Drag { from, to } => self.drag(from, to),
+            Intent::Release => self.grip = None,
+            Intent::Pan(share) => {
+                let by = self.on_table(share * self.camera().width_mm);
+                self.speed = Speed::default();
+                if self.calm {
+                    self.move_centre(by);
+                } else {
+                    self.speed = Speed::throw(by);
+                }
+            }
+            Intent::Zoom { at, factor } => {
+                let width = self.zoom.map_or(self.camera().width_mm, |(width, _)| width);
+                self.zoom_to(width / factor, at);
+            }
+            Intent::Pinch { from, to, factor } => {
+                self.set_width(self.camera().width_mm / factor, from);
+                self.shift(from, to);
+            }
+            Intent::TrueSize { at } => self.true_size(at),
+            Intent::Flip => self.turn_over(),
+            Intent::Home => self.enter(self.scene),
+            Intent::MoveLamp(by) => {
+                let by = self.on_table(by);
+                self.place_lamp(|lamp| lamp.moved(by));
+            }
+            Intent::RaiseLamp(elevation) => self.place_lamp(|lamp| lamp.raised(elevation)),
+            Intent::StepState(by) => {
+                let drawing = self.exhibit.drawing_of(&self.exhibit.scenes[self.scene]);
+                self.view.step_state(drawing, by);
+            }
+            Intent::StepOverlay => {
+                let drawing = self.exhibit.drawing_of(&self.exhibit.scenes[self.scene]);
+                self.view.step_overlay(drawing);
+            }
+            Intent::Opacity(by) => self.view.fade(by),
+            Intent::StepScene(by) => {
+                let count = self.exhibit.scenes.len();
+                let mut next = wrapped(self.scene, by, count);
+                while self.refused.contains(&next) && next != self.scene {
+                    next = wrapped(next, by, count);
+                }
+                self.enter(next);
+            }
+            Intent::Caption | Intent::Keys | Intent::Fullscreen | Intent::Quit => {}
+        }
+    }
+
+    /// Lets `seconds` pass. A sheet is turned over only while what is shown is `settled`: its
+    /// other side may still be loading.
+    pub fn advance(&mut self, seconds: f64, settled: bool) {
+        // Once loaded, the other side stays at hand.
+        self.both_sides |= self.is_steep();
+        if let Some((target, at)) = self.zoom {
+            let next = motion::approach(self.camera().width_mm, target, seconds);
+            let arrived = (next / target - 1.0).abs() < ARRIVED;
+            self.set_width(if arrived { target } else { next }, at);
+            if arrived {
+                self.zoom = None;
+            }
+        }
+        if let Some(elapsed) = self.flip
+            && settled
+        {
+            // Slow frames slow it down: none of them is to skip it.
+            let elapsed = elapsed + seconds.min(FLIP_STEP_S);
+            self.flip = Some(elapsed);
+            if motion::flip_progress(elapsed) >= 1.0 {
+                self.finish_flip();
+            }
+        }
+        if self.grip.is_some() {
+            self.speed.forget(seconds);
+        } else if self.turn != DVec2::ZERO {
+            let (turn, speed) = motion::spring(self.turn, self.speed, seconds);
+            self.turn = turn.clamp_length_max(FARTHEST_TURN_DEG);
+            self.speed = speed;
+            if self.calm || (turn.length() < REST_DEG && speed.0.length() < REST_DEG) {
+                self.turn = DVec2::ZERO;
+                self.speed = Speed::default();
+            }
+        } else if self.speed != Speed::default() {
+            let by = self.speed.glide(seconds);
+            self.move_centre(by);
+            if self.calm || self.speed.reach() < GLIDE_END * self.camera().width_mm {
+                self.speed = Speed::default();
+            }
+        }
+    }
+
+    /// Whether something goes on moving without being touched.
+    pub fn is_moving(&self) -> bool {
+        let glides = self.turn != DVec2::ZERO || self.speed != Speed::default();
+        self.zoom.is_some() || self.flip.is_some() || (glides && self.grip.is_none())
+    }
+
+    /// What is to be shown.
+    pub fn shown(&self) -> Shown {
+        let progress = self.flip.map_or(0.0, motion::flip_progress);
+        let mut scene = self.written().clone();
+        let drawing = self.drawing();
+        scene.camera = self.camera();
+        scene.side = self.view.side;
+        scene.state = self.view.state;
+        if self.flip.is_some() {
+            // The place under view stays the same place of the sheet while it goes round.
+            let there = other_side(scene.camera.centre_mm, drawing.size_mm, drawing.flip);
+            let part = (1.0 - (PI * progress).cos()) / 2.0;
+            scene.camera.centre_mm = scene.camera.centre_mm.lerp(there, part);
+            if progress >= 0.5 {
+                scene.side = scene.side.other();
+            }
+        }
+        scene.overlays = self.view.overlays(drawing, scene.side);
+        let pose = self.turned() * self.half_turned(progress);
+        Shown {
+            exhibit: self.lit.clone(),
+            scene,
+            tier: match self.tier {
+                Tier::Gallery | Tier::Study if self.hurried => Tier::Draft,
+                tier => tier,
+            },
+            pose,
+            both_sides: self.both_sides || self.is_steep(),
+            aspect: self.picture.aspect,
+        }
+    }
+
+    /// Something moves and frames come too slowly: the cheapest tier, or again the one that was
+    /// asked for. Tiers from the literature are never replaced.
+    pub fn hurry(&mut self, hurried: bool) {
+        self.hurried = hurried;
+    }
+
+    /// Whether the cheapest tier is good enough just now.
+    pub fn is_hurried(&self) -> bool {
+        self.hurried
+    }
+
+    /// Where the lamp stands that the hand moves.
+    pub fn lamp(&self) -> Option<LampPlace> {
+        self.view.lamp
+    }
+
+    /// Whether the sheet is seen at true size, and if so whether the display's size is known.
+    pub fn at_true_size(&self) -> Option<bool> {
+        let width = self.camera().width_mm;
+        let at_true = (width / self.picture.width_mm - 1.0).abs() < 2.0 * ARRIVED;
+        at_true.then_some(self.picture.measured)
+    }
+
+    /// What is shown now could be shown.
+    pub fn keep(&mut self) {
+        if self.flip.is_none() {
+            self.good = Some((self.scene, self.view.clone()));
+        }
+    }
+
+    /// What was asked for cannot be shown: back to what could. False if nothing could yet.
+    pub fn retreat(&mut self) -> bool {
+        let Some((scene, view)) = self.good.clone() else {
+            return false;
+        };
+        if scene != self.scene {
+            self.refused.insert(self.scene);
+        }
+        self.scene = scene;
+        self.view = view;
+        self.still();
+        self.relight();
+        true
+    }
+
+    fn written(&self) -> &Scene {
+        &self.exhibit.scenes[self.scene]
+    }
+
+    fn drawing(&self) -> &Drawing {
+        self.exhibit.drawing_of(self.written())
+    }
+
+    fn enter(&mut self, scene: usize) {
+        self.scene = scene;
+        self.view = View::of(&self.exhibit, self.written());
+        self.still();
+        self.relight();
+    }
+
+    fn still(&mut self) {
+        self.turn = DVec2::ZERO;
+        self.speed = Speed::default();
+        self.grip = None;
+        self.zoom = None;
+        self.before_true_size = None;
+        self.flip = None;
+        self.both_sides = false;
+    }
+
+    /// The camera in a picture of this shape.
+    fn camera(&self) -> Camera {
+        let size = self.drawing().size_mm;
+        self.view.camera.fitted(size, self.picture.aspect)
+    }
+
+    /// The widest picture in mm: the whole sheet, or more if the scene says so.
+    fn widest(&self) -> f64 {
+        let fit = |camera: Camera| camera.fitted(self.drawing().size_mm, self.picture.aspect);
+        let whole = fit(Camera::whole_sheet(self.drawing().size_mm));
+        whole.width_mm.max(fit(self.written().camera).width_mm)
+    }
+
+    /// Right and up in the picture, as right and up on the table.
+    fn on_table(&self, seen: DVec2) -> DVec2 {
+        DVec2::from_angle(self.view.camera.turn.radians()).rotate(seen)
+    }
+
+    fn drag(&mut self, from: DVec2, to: DVec2) {
+        let grip = match self.grip {
+            Some(Grip::Undecided) | None => {
+                if self.camera().width_mm < ZOOMED * self.widest() && self.turn == DVec2::ZERO {
+                    Grip::Move
+                } else {
+                    Grip::Turn
+                }
+            }
+            Some(grip) => grip,
+        };
+        self.grip = Some(grip);
+        if grip == Grip::Turn {
+            // The side that faces us follows the hand.
+            let by = self.on_table(DVec2::new(-(to.y - from.y), to.x - from.x) * TURN_DEG);
+            self.turn = (self.turn + by).clamp_length_max(FARTHEST_TURN_DEG);
+            self.speed.push(by);
+        } else {
+            self.shift(from, to);
+        }
+    }
+
+    /// Brings what lies at `from` to `to`.
+    fn shift(&mut self, from: DVec2, to: DVec2) {
+        if let (Some(start), Some(end)) = (self.table_point(from), self.table_point(to)) {
+            self.move_centre(start - end);
+            self.speed.push(start - end);
+        }
+    }
+
+    fn table_point(&self, at: DVec2) -> Option<DVec2> {
+        let eye = Eye::new(&self.camera(), self.drawing().size_mm);
+        let point = eye.table_point(at, self.picture.aspect)?;
+        Some(point.truncate())
+    }
+
+    /// Moves what the eye looks at, right and up on the table in mm, within the sheet.
+    fn move_centre(&mut self, by: DVec2) {
+        let mut camera = self.camera();
+        camera.centre_mm += DVec2::new(by.x, -by.y);
+        self.set_camera(camera);
+    }
+
+    fn set_camera(&mut self, mut camera: Camera) {
+        let size = self.drawing().size_mm;
+        let widest = self.widest();
+        camera.width_mm = camera.width_mm.clamp(NARROWEST_MM.min(widest), widest);
+        // The picture stays within the widest one, which is centred.
+        let spare = (widest - camera.width_mm) / 2.0;
+        let spare = DVec2::new(spare, spare / self.picture.aspect);
+        let seen = self.on_table(DVec2::X).abs();
+        let reach = DVec2::new(
+            seen.x * spare.x + seen.y * spare.y,
+            seen.y * spare.x + seen.x * spare.y,
+        );
+        let middle = size / 2.0;
+        camera.centre_mm = camera.centre_mm.clamp(middle - reach, middle + reach);
+        let whole = Camera::whole_sheet(size);
+        // The whole sheet goes on filling a picture that changes its shape.
+        self.view.camera = if camera == whole.fitted(size, self.picture.aspect) {
+            whole
+        } else {
+            camera
+        };
+    }
+
+    fn set_width(&mut self, width_mm: f64, at: DVec2) {
+        let before = self.table_point(at);
+        let camera = Camera {
+            width_mm,
+            ..self.camera()
+        };
+        self.set_camera(camera);
+        if let (Some(before), Some(after)) = (before, self.table_point(at)) {
+            self.move_centre(before - after);
+        }
+    }
+
+    fn zoom_to(&mut self, width_mm: f64, at: DVec2) {
+        let target = width_mm.clamp(NARROWEST_MM, self.widest());
+        if self.calm {
+            self.set_width(target, at);
+        } else {
+            self.zoom = Some((target, at));
+        }
+    }
+
+    fn true_size(&mut self, at: DVec2) {
+        let width = self.zoom.map_or(self.camera().width_mm, |(width, _)| width);
+        let target = self.picture.width_mm.clamp(NARROWEST_MM, self.widest());
+        if (width / target - 1.0).abs() < 2.0 * ARRIVED {
+            let back = self.before_true_size.take().unwrap_or(self.widest());
+            self.zoom_to(back, at);
+        } else {
+            self.before_true_size = Some(width);
+            self.zoom_to(target, at);
+        }
+    }
+
+    fn turn_over(&mut self) {
+        if self.flip.is_some() {
+            return;
+        }
+        self.both_sides = true;
+        self.speed = Speed::default();
+        if self.calm {
+            self.finish_flip();
+        } else {
+            self.flip = Some(0.0);
+        }
+    }
+
+    fn finish_flip(&mut self) {
+        let drawing = self.drawing();
+        let (size, axis) = (drawing.size_mm, drawing.flip);
+        let mut camera = self.camera();
+        camera.centre_mm = other_side(camera.centre_mm, size, axis);
+        self.set_camera(camera);
+        self.view.side = self.view.side.other();
+        self.flip = None;
+    }
+
+    /// Whether the sheet is seen so flatly that its other side may come into sight.
+    fn is_steep(&self) -> bool {
+        let towards = Eye::new(&self.view.camera, self.drawing().size_mm).towards;
+        (self.turned() * DVec3::Z).dot(towards) < STEEP_DEG.to_radians().cos()
+    }
+
+    fn turned(&self) -> DQuat {
+        let turn = self.turn * (PI / 180.0);
+        DQuat::from_scaled_axis(turn.extend(0.0))
+    }
+
+    /// The sheet on its way to its other side: its right, or lower, edge comes up towards us and
+    /// goes over, and comes back the same way.
+    fn half_turned(&self, progress: f64) -> DQuat {
+        let part = match self.view.side {
+            SideName::Recto => progress,
+            SideName::Verso => 1.0 - progress,
+        };
+        DQuat::from_axis_angle(self.drawing().flip.axis(), -PI * part)
+    }
+
+    fn place_lamp(&mut self, change: impl FnOnce(LampPlace) -> LampPlace) {
+        self.view.lamp = self.view.lamp.map(change);
+        self.relight();
+    }
+
+    fn relight(&mut self) {
+        self.lit = self.view.lit(&self.exhibit, self.written());
+    }
+}

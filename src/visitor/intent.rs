@@ -1,0 +1,69 @@
+//! What somebody wants, whatever device they said it with.
+
+use bevy::prelude::Message;
+use glam::DVec2;
+
+/// A wish of the visitor. Places in the picture are −1…1 in both directions, y up.
+#[derive(Message, Clone, Copy, Debug, PartialEq)]
+pub enum Intent {
+    /// A finger or the mouse's button went down on the picture: everything that glides stops.
+    Take,
+    /// What lies at `from` is to come to `to`: turns the sheet at rest size, moves the picture
+    /// when zoomed in.
+    Drag {
+        from: DVec2,
+        to: DVec2,
+    },
+    /// The hand lets go.
+    Release,
+    /// Pans by this share of the picture's width, x right and y up.
+    Pan(DVec2),
+    /// Magnifies by `factor` about the place `at`.
+    Zoom {
+        at: DVec2,
+        factor: f64,
+    },
+    /// Two fingers: what lies at `from` comes to `to`, magnified by `factor` about it.
+    Pinch {
+        from: DVec2,
+        to: DVec2,
+        factor: f64,
+    },
+    /// To true size about the place `at`, and back.
+    TrueSize {
+        at: DVec2,
+    },
+    /// Turns the sheet over.
+    Flip,
+    /// The scene as it is written.
+    Home,
+    /// Moves the lamp over the hemisphere above the sheet as seen from above, by parts of its
+    /// radius, x right and y up.
+    MoveLamp(DVec2),
+    /// Brings the lamp to this height, in degrees above the sheet, from where it stands.
+    RaiseLamp(f64),
+    /// To another state of conservation, forwards (1) or back (−1).
+    StepState(i32),
+    /// None, each overlay of the side, all of them.
+    StepOverlay,
+    /// Makes the overlays stronger or fainter by this share.
+    Opacity(f64),
+    /// To another scene, forwards (1) or back (−1).
+    StepScene(i32),
+    /// Shows or hides the caption.
+    Caption,
+    /// Shows or hides the list of keys.
+    Keys,
+    Fullscreen,
+    Quit,
+}
+
+impl Intent {
+    /// Whether more of the same is likely to follow at once.
+    pub fn is_motion(self) -> bool {
+        matches!(
+            self,
+            Self::Drag { .. } | Self::Pinch { .. } | Self::Zoom { .. } | Self::MoveLamp(_)
+        )
+    }
+}

@@ -1,0 +1,91 @@
+//! The visitor at the window: devices → intents → the hand → what is shown.
+//!
+//! | step | where |
+//! |---|---|
+//! | events of mouse, keys and fingers → [`Intent`] | `input` |
+//! | [`Intent`] and time → [`Hand`] | [`hand`], `view`, `lamp`, `motion` |
+//! | [`Hand`] → [`crate::stage::Shown`] | [`Hand::shown`] |
+//! | texts | `caption` |
+//! | the window, and its rest | `window` |
+
+mod caption;
+mod display;
+pub mod hand;
+mod input;
+mod intent;
+mod lamp;
+mod motion;
+mod view;
+mod window;
+
+use std::{path::Path, sync::Arc};
+
+pub use caption::KEYS;
+pub use display::NoDisplay;
+pub use hand::Hand;
+pub use intent::Intent;
+pub use lamp::{LOWEST_DEG, LampPlace};
+
+use crate::{
+    device::{self, NoDevice},
+    manifest::{Exhibit, Fault, Faults, Severity, did_you_mean, quote, quoted_list},
+    optics::tier::Tier,
+};
+
+/// How an exhibit is shown.
+#[derive(Clone, Debug, Default)]
+pub struct ShowOptions {
+    /// Id of the first scene; without it, the exhibit's first.
+    pub scene: Option<String>,
+    pub tier: Tier,
+    /// Width and height in mm of the display's visible area, for true size.
+    pub display_mm: Option<[f64; 2]>,
+    /// Width and height of the window in pixels.
+    pub size: Option<[u32; 2]>,
+    pub fullscreen: bool,
+}
+
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+pub enum ShowError {
+    #[error(transparent)]
+    Faults(#[from] Faults),
+    #[error(transparent)]
+    NoDevice(#[from] NoDevice),
+    #[error(transparent)]
+    NoDisplay(#[from] NoDisplay),
+}
+
+/// Opens the exhibit at `path` in a window, and returns the exit code when it closes.
+///
+/// # Errors
+/// All faults of the exhibit, or [`ShowError::NoDevice`] or [`ShowError::NoDisplay`].
+pub fn show(path: &Path, options: &ShowOptions) -> Result<u8, ShowError> {
+    let (exhibit, warnings) = Exhibit::read(path)?;
+    let scene = first_scene(&exhibit, options.scene.as_deref())?;
+    for warning in warnings {
+        eprintln!("{warning}");
+    }
+    device::probe()?;
+    display::probe()?;
+    Ok(window::run(Arc::new(exhibit), scene, options)?)
+}
+
+fn first_scene(exhibit: &Exhibit, id: Option<&str>) -> Result<usize, Faults> {
+    let Some(id) = id else {
+        return Ok(0);
+    };
+    let ids = || exhibit.scenes.iter().map(|scene| scene.id.as_str());
+    exhibit.scene(id).map(|(index, _)| index).ok_or_else(|| {
+        Fault {
+            severity: Severity::Error,
+            file: None,
+            place: None,
+            path: "--scene".into(),
+            found: quote(id),
+            allowed: quoted_list(ids()),
+            remedy: did_you_mean(id, ids(), "name a scene of the exhibit"),
+        }
+        .into()
+    })
+}

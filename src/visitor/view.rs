@@ -1,0 +1,178 @@
+//! What a hand can change of a scene, and what of it outlives a new version of the exhibit.
+
+use std::sync::Arc;
+
+use super::lamp::LampPlace;
+use crate::manifest::exhibit::{Camera, Drawing, Exhibit, MAX_OVERLAYS, Scene, SideName};
+
+/// Opacity of an overlay that the scene does not mention.
+const OPACITY: f64 = 0.7;
+/// An overlay that is on can be made no fainter.
+const FAINTEST: f64 = 0.1;
+
+/// An overlay as the hand left it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Layer {
+    /// Index into the drawing's overlays.
+    overlay: usize,
+    opacity: f64,
+    on: bool,
+}
+
+/// The changeable part of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    pub side: SideName,
+    pub camera: Camera,
+    /// Index into the drawing's states.
+    pub state: Option<usize>,
+    /// Every overlay of the drawing, those of the scene first, from the lowest.
+    layers: Vec<Layer>,
+    /// Of the first lamp that can be moved.
+    pub lamp: Option<LampPlace>,
+}
+
+impl View {
+    /// As the scene is written.
+    pub fn of(exhibit: &Exhibit, scene: &Scene) -> Self {
+        let drawing = exhibit.drawing_of(scene);
+        let mut layers: Vec<Layer> = scene
+            .overlays
+            .iter()
+            .map(|&(overlay, opacity)| Layer {
+                overlay,
+                opacity,
+                on: opacity > 0.0,
+            })
+            .collect();
+        for overlay in 0..drawing.overlays.len() {
+            if layers.iter().all(|layer| layer.overlay != overlay) {
+                layers.push(Layer {
+                    overlay,
+                    opacity: OPACITY,
+                    on: false,
+                });
+            }
+        }
+        Self {
+            side: scene.side,
+            camera: scene.camera,
+            state: scene.state,
+            layers,
+            lamp: movable_lamp(exhibit, scene).and_then(|lamp| LampPlace::of(&exhibit.lamps[lamp])),
+        }
+    }
+
+    /// What this is in a new version of the exhibit: where the hand changed nothing, as the new
+    /// scene is written; where it did, and the new drawing has it still, as the hand left it.
+    pub fn carried(&self, (old, was): (&Exhibit, &Scene), (new, is): (&Exhibit, &Scene)) -> Self {
+        let written = Self::of(old, was);
+        let mut view = Self::of(new, is);
+        let (before, after) = (old.drawing_of(was), new.drawing_of(is));
+        if before.id != after.id {
+            return view;
+        }
+        if self.side != written.side {
+            view.side = self.side;
+        }
+        if self.camera != written.camera && before.size_mm == after.size_mm {
+            view.camera = self.camera;
+        }
+        if self.state != written.state {
+            view.state = match self.state {
+                None => None,
+                Some(state) => match after.state(&before.states[state].id) {
+                    Some((index, _)) => Some(index),
+                    None => view.state,
+                },
+            };
+        }
+        if self.layers != written.layers {
+            for layer in &mut view.layers {
+                let id = &after.overlays[layer.overlay].id;
+                let mine = self
+                    .layers
+                    .iter()
+                    .find(|mine| before.overlays[mine.overlay].id == *id);
+                if let Some(mine) = mine {
+                    (layer.on, layer.opacity) = (mine.on, mine.opacity);
+                }
+            }
+        }
+        if self.lamp != written.lamp && view.lamp.is_some() {
+            view.lamp = self.lamp;
+        }
+        view
+    }
+
+    /// The overlays that lie on `side`, from the lowest.
+    pub fn overlays(&self, drawing: &Drawing, side: SideName) -> Vec<(usize, f64)> {
+        self.layers
+            .iter()
+            .filter(|layer| layer.on && drawing.overlays[layer.overlay].side == side)
+            .map(|layer| (layer.overlay, layer.opacity))
+            .take(MAX_OVERLAYS)
+            .collect()
+    }
+
+    /// To the next choice: none of the side's overlays, each of them, all of them.
+    pub fn step_overlay(&mut self, drawing: &Drawing) {
+        let mut mine: Vec<&mut Layer> = self
+            .layers
+            .iter_mut()
+            .filter(|layer| drawing.overlays[layer.overlay].side == self.side)
+            .collect();
+        mine.sort_by_key(|layer| layer.overlay);
+        let count = mine.len();
+        let on: Vec<usize> = (0..count).filter(|&layer| mine[layer].on).collect();
+        let next = match on[..] {
+            [] => 0..count.min(1),
+            [one] if one + 1 < count => one + 1..one + 2,
+            [_] if count > 1 => 0..count,
+            _ => 0..0,
+        };
+        for (index, layer) in mine.into_iter().enumerate() {
+            layer.on = next.contains(&index);
+            // One that the scene names at no opacity would stay unseen.
+            layer.opacity = layer.opacity.max(FAINTEST);
+        }
+    }
+
+    /// Makes the overlays that are on stronger or fainter.
+    pub fn fade(&mut self, by: f64) {
+        for layer in self.layers.iter_mut().filter(|layer| layer.on) {
+            layer.opacity = (layer.opacity + by).clamp(FAINTEST, 1.0);
+        }
+    }
+
+    /// To the next state or back, past the sheet as its sides describe it.
+    pub fn step_state(&mut self, drawing: &Drawing, by: i32) {
+        let place = self.state.map_or(0, |state| state + 1);
+        let next = wrapped(place, by, drawing.states.len() + 1);
+        self.state = next.checked_sub(1);
+    }
+
+    /// The exhibit with the scene's lamp where the hand put it.
+    pub fn lit(&self, exhibit: &Arc<Exhibit>, scene: &Scene) -> Arc<Exhibit> {
+        match (movable_lamp(exhibit, scene), self.lamp) {
+            (Some(lamp), Some(place)) if LampPlace::of(&exhibit.lamps[lamp]) != self.lamp => {
+                let mut lit = Exhibit::clone(exhibit);
+                place.put(&mut lit.lamps[lamp]);
+                Arc::new(lit)
+            }
+            _ => exhibit.clone(),
+        }
+    }
+}
+
+/// `place` of `count` after `by` steps, around.
+pub fn wrapped(place: usize, by: i32, count: usize) -> usize {
+    let count = count.max(1) as i64;
+    (place as i64 + i64::from(by)).rem_euclid(count) as usize
+}
+
+/// Index of the scene's first lamp that a hand can move.
+fn movable_lamp(exhibit: &Exhibit, scene: &Scene) -> Option<usize> {
+    let movable = |lamp: &usize| LampPlace::of(&exhibit.lamps[*lamp]).is_some();
+    scene.lamps.iter().copied().find(movable)
+}

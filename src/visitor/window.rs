@@ -1,0 +1,463 @@
+//! The window: opens, follows the hand, and rests while nothing moves.
+
+use std::{
+    any::Any,
+    panic::{self, AssertUnwindSafe},
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+
+use bevy::{
+    core_pipeline::{Core3d, Core3dSystems},
+    ecs::relationship::RelationshipTarget,
+    log::{Level, LogPlugin},
+    prelude::*,
+    render::{RenderApp, RenderPlugin, renderer::RenderAdapterInfo},
+    window::{
+        ExitCondition, HasWindows, Monitor, MonitorSelection, OnMonitor, PrimaryWindow,
+        WindowCloseRequested, WindowEvent, WindowMode, WindowResolution,
+    },
+    winit::{EventLoopProxyWrapper, UpdateMode, WinitSettings, WinitUserEvent},
+};
+
+use wgpu::DeviceType;
+
+use super::{
+    NoDisplay, ShowOptions,
+    caption::{self, Texts},
+    hand::{Hand, Picture},
+    input::Devices,
+    intent::Intent,
+};
+use crate::{
+    device,
+    manifest::exhibit::Exhibit,
+    stage::{
+        Arranged, Library, Shown, StagePlugin, StageSet, Waker,
+        camera::{camera_bundle, without_clusters},
+        legend::TextCamera,
+        reload::{ReloadPlugin, Reread},
+    },
+};
+
+/// Size of the window in pixels where none is asked for.
+const SIZE: [u32; 2] = [1280, 800];
+/// Samples along the steepest direction of a tilted map.
+const ANISOTROPY: u16 = 16;
+/// Pixels per inch of a display whose size is not known.
+const PPI: f64 = 96.0;
+const MM_PER_INCH: f64 = 25.4;
+/// Frames drawn after the stage has settled, until maps and pipelines have reached the screen.
+const SETTLING_FRAMES: u32 = 4;
+/// Frames drawn after a change that needs nothing new on the GPU.
+const CHANGE_FRAMES: u32 = 1;
+/// Frames that take longer are too slow to follow a hand.
+const SLOW: Duration = Duration::from_millis(90);
+/// Between two looks at whether the first maps have arrived.
+const LOADING_PAUSE: Duration = Duration::from_millis(30);
+/// Writes the number of frames drawn into this file, for tests.
+const FRAME_LOG: &str = "RECTO_FRAME_LOG";
+/// How often.
+const FRAME_LOG_PERIOD: Duration = Duration::from_millis(200);
+/// Set to anything but 0, it turns motion into cuts.
+const REDUCED_MOTION: &str = "RECTO_REDUCED_MOTION";
+
+/// The size of the display's visible area in mm, if known.
+#[derive(Resource, Clone, Copy)]
+struct DisplayMm(Option<[f64; 2]>);
+
+/// Shows scene number `scene` until the window closes, and returns the exit code.
+pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result<u8, NoDisplay> {
+    let mut app = App::new();
+    open(&mut app, &exhibit, options)?;
+    let proxy = (**app.world().resource::<EventLoopProxyWrapper>()).clone();
+    // The loop is gone when the program is closing: nobody is left to wake.
+    let wake = move || {
+        let _ = proxy.send_event(WinitUserEvent::WakeUp);
+    };
+    let [width, height] = options.size.unwrap_or(SIZE).map(f64::from);
+    let picture = Picture {
+        aspect: width / height,
+        width_mm: width * MM_PER_INCH / PPI,
+        measured: false,
+    };
+    let calm = std::env::var_os(REDUCED_MOTION).is_some_and(|set| !set.is_empty() && set != "0");
+    let hand = Hand::new(exhibit.clone(), scene, options.tier, picture, calm);
+    app.insert_resource(Waker(Arc::new(wake)))
+        .insert_resource(WinitSettings::continuous())
+        .insert_resource(DisplayMm(options.display_mm))
+        .insert_resource(hand.shown())
+        .insert_resource(hand)
+        .init_resource::<Devices>()
+        .init_resource::<Texts>()
+        .init_resource::<Pace>()
+        .add_message::<Intent>()
+        .add_plugins((
+            StagePlugin {
+                dither: true,
+                anisotropy: ANISOTROPY,
+            },
+            ReloadPlugin { exhibit },
+        ))
+        .add_observer(outlive_display)
+        .add_systems(Startup, (without_clusters, suit_device, set_up))
+        .add_systems(
+            Update,
+            (
+                (take_in_reread, measure, read_devices, steer, follow_wishes)
+                    .chain()
+                    .in_set(StageSet::Steer),
+                (fall_back, caption::draw, rest)
+                    .chain()
+                    .after(StageSet::Arrange),
+            ),
+        );
+    count_frames(&mut app);
+    match app.run() {
+        AppExit::Success => Ok(0),
+        AppExit::Error(code) => Ok(code.get()),
+    }
+}
+
+/// The window system's library panics where a display answers but cannot be used, such as
+/// where its own libraries are missing.
+fn open(app: &mut App, exhibit: &Exhibit, options: &ShowOptions) -> Result<(), NoDisplay> {
+    let [width, height] = options.size.unwrap_or(SIZE);
+    let window = Window {
+        title: title(exhibit),
+        resolution: WindowResolution::new(width, height),
+        mode: mode(options.fullscreen),
+        ..default()
+    };
+    let plugins = DefaultPlugins
+        .set(WindowPlugin {
+            primary_window: Some(window),
+            exit_condition: ExitCondition::DontExit,
+            ..default()
+        })
+        .set(RenderPlugin {
+            render_creation: device::render_creation(),
+            // A pipeline that compiles behind the scenes leaves the table empty meanwhile.
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
+        .set(LogPlugin {
+            level: Level::ERROR,
+            filter: String::new(),
+            ..default()
+        });
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let opened = panic::catch_unwind(AssertUnwindSafe(|| {
+        app.add_plugins(plugins);
+    }));
+    panic::set_hook(hook);
+    opened.map_err(|words| NoDisplay {
+        reason: reason(&*words),
+    })
+}
+
+fn reason(panic: &(dyn Any + Send)) -> String {
+    let words = panic.downcast_ref::<String>().cloned();
+    words
+        .or_else(|| panic.downcast_ref::<&str>().map(|&words| words.into()))
+        .unwrap_or_else(|| "the window system refused".into())
+}
+
+fn mode(fullscreen: bool) -> WindowMode {
+    if fullscreen {
+        // Exclusive full screen does not survive a display that goes away.
+        WindowMode::BorderlessFullscreen(MonitorSelection::Current)
+    } else {
+        WindowMode::Windowed
+    }
+}
+
+/// A processor that stands in for a graphics device takes four times as long for a frame with
+/// anisotropic filtering.
+fn suit_device(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
+    if adapter.device_type == DeviceType::Cpu {
+        commands.insert_resource(Library::new(1));
+    }
+}
+
+fn set_up(mut commands: Commands) {
+    commands.spawn((camera_bundle(), TextCamera { height: 1.0 }));
+}
+
+/// A display that is switched off would take its windows with it.
+fn outlive_display(display: On<Despawn, Monitor>, mut displays: Query<&mut HasWindows>) {
+    if let Ok(mut windows) = displays.get_mut(display.entity) {
+        windows.collection_mut_risky().clear();
+    }
+}
+
+/// The window's, from the exhibit's.
+fn title(exhibit: &Exhibit) -> String {
+    let title = exhibit.text(&exhibit.title, "").unwrap_or_default();
+    format!("{title} – Recto")
+}
+
+fn take_in_reread(
+    mut reread: MessageReader<Reread>,
+    mut hand: ResMut<Hand>,
+    mut windows: Query<&mut Window, With<PrimaryWindow>>,
+) {
+    if let Some(Reread(exhibit)) = reread.read().last() {
+        hand.replace(exhibit.clone());
+        for mut window in &mut windows {
+            window.title = title(exhibit);
+        }
+    }
+}
+
+/// Follows the window's size.
+fn measure(
+    windows: Query<(Ref<Window>, Option<&OnMonitor>), With<PrimaryWindow>>,
+    monitors: Query<&Monitor>,
+    display_mm: Res<DisplayMm>,
+    mut hand: ResMut<Hand>,
+    mut devices: ResMut<Devices>,
+    mut texts: Query<&mut TextCamera>,
+) {
+    let Ok((window, monitor)) = windows.single() else {
+        return;
+    };
+    let size = window.size();
+    if size.min_element() < 1.0 {
+        return;
+    }
+    devices.resize(size);
+    for mut text in &mut texts {
+        if text.height != size.y {
+            text.height = size.y;
+        }
+    }
+    let pixels = window.physical_width();
+    let monitor = monitor.and_then(|on| monitors.get(on.0).ok());
+    let measured = display_mm.0.zip(monitor).map(|([width, _], monitor)| {
+        f64::from(pixels) * width / f64::from(monitor.physical_width.max(1))
+    });
+    hand.resize(Picture {
+        aspect: f64::from(size.x) / f64::from(size.y),
+        width_mm: measured.unwrap_or(f64::from(size.x) * MM_PER_INCH / PPI),
+        measured: measured.is_some(),
+    });
+}
+
+fn read_devices(
+    mut events: MessageReader<WindowEvent>,
+    mut devices: ResMut<Devices>,
+    time: Res<Time<Real>>,
+    mut intents: MessageWriter<Intent>,
+) {
+    for event in events.read() {
+        devices.take(event, time.elapsed(), |intent| {
+            intents.write(intent);
+        });
+    }
+}
+
+/// Moves the hand, and shows what changed.
+fn steer(
+    mut intents: MessageReader<Intent>,
+    mut hand: ResMut<Hand>,
+    time: Res<Time<Real>>,
+    (arranged, pace): (Res<Arranged>, Res<Pace>),
+    mut shown: ResMut<Shown>,
+) {
+    hand.advance(time.delta_secs_f64(), arranged.is_settled());
+    let mut moving = hand.is_moving();
+    for intent in intents.read() {
+        hand.apply(*intent);
+        moving |= intent.is_motion();
+    }
+    if moving && pace.slow {
+        hand.hurry(true);
+    }
+    let wanted = hand.shown();
+    if differs(&shown, &wanted) {
+        *shown = wanted;
+    }
+}
+
+fn differs(a: &Shown, b: &Shown) -> bool {
+    !Arc::ptr_eq(&a.exhibit, &b.exhibit)
+        || a.scene != b.scene
+        || a.pose != b.pose
+        || a.both_sides != b.both_sides
+        || a.aspect != b.aspect
+        || a.tier != b.tier
+}
+
+/// Wishes that are about the window and its texts.
+fn follow_wishes(
+    mut intents: MessageReader<Intent>,
+    mut closed: MessageReader<WindowCloseRequested>,
+    mut texts: ResMut<Texts>,
+    mut windows: Query<&mut Window, With<PrimaryWindow>>,
+    mut exit: MessageWriter<AppExit>,
+) {
+    for intent in intents.read() {
+        match intent {
+            Intent::Caption => texts.caption = !texts.caption,
+            Intent::Keys => texts.keys = !texts.keys,
+            Intent::Fullscreen => {
+                for mut window in &mut windows {
+                    window.mode = mode(window.mode == WindowMode::Windowed);
+                }
+            }
+            Intent::Quit => drop(exit.write(AppExit::Success)),
+            _ => {}
+        }
+    }
+    if closed.read().next().is_some() {
+        exit.write(AppExit::Success);
+    }
+}
+
+/// Where maps cannot be decoded, the curator is told and the visitor sees what was there
+/// before; if nothing was, the exhibit is at fault.
+fn fall_back(
+    mut hand: ResMut<Hand>,
+    mut shown: ResMut<Shown>,
+    arranged: Res<Arranged>,
+    library: Res<Library>,
+    mut told: Local<usize>,
+    mut exit: MessageWriter<AppExit>,
+) {
+    if arranged.is_settled() {
+        hand.bypass_change_detection().keep();
+        return;
+    }
+    if library.is_busy() {
+        return;
+    }
+    // Reading the exhibit again empties the list.
+    let from = if *told > library.faults.len() {
+        0
+    } else {
+        *told
+    };
+    for fault in &library.faults[from..] {
+        eprintln!("{fault}");
+    }
+    *told = library.faults.len();
+    if hand.retreat() {
+        *shown = hand.shown();
+    } else {
+        exit.write(AppExit::from_code(1));
+    }
+}
+
+/// How the window draws just now.
+#[derive(Resource, Default)]
+struct Pace {
+    /// Frames that follow without being asked for.
+    left: u32,
+    /// Frames at the tier that was asked for come too slowly to follow a hand.
+    slow: bool,
+    /// Something has been shown.
+    begun: bool,
+}
+
+/// Draws on while something moves or is on its way, and then not at all.
+fn rest(
+    (shown, texts): (Res<Shown>, Res<Texts>),
+    (arranged, library): (Res<Arranged>, Res<Library>),
+    time: Res<Time<Real>>,
+    mut hand: ResMut<Hand>,
+    mut pace: ResMut<Pace>,
+    mut settings: ResMut<WinitSettings>,
+) {
+    let settled = arranged.is_settled();
+    // Only a frame that follows another at once tells how long they take.
+    if settled && pace.left > 0 && !hand.is_hurried() {
+        pace.slow = time.delta() > SLOW;
+    }
+    pace.begun |= settled;
+    pace.left = pace.left.saturating_sub(1);
+    if !settled {
+        pace.left = SETTLING_FRAMES;
+    } else if shown.is_changed() || texts.is_changed() || hand.is_moving() {
+        pace.left = pace.left.max(CHANGE_FRAMES);
+    } else if pace.left == 0 && hand.is_hurried() {
+        // At rest, the picture refines.
+        hand.hurry(false);
+        pace.left = CHANGE_FRAMES;
+    }
+    let loading = !settled && library.is_busy();
+    if loading && !pace.begun {
+        // Nothing to see yet: the processor is better used by the maps.
+        std::thread::sleep(LOADING_PAUSE);
+    }
+    // The library wakes a window that waits for it, except that a new one also waits for its
+    // shaders, which do not. From one mode straight to the other: a finite wait in between
+    // keeps a core busy.
+    let mode = if pace.left > 0 && !(loading && pace.begun) {
+        UpdateMode::Continuous
+    } else {
+        UpdateMode::reactive_low_power(Duration::MAX)
+    };
+    if settings.focused_mode != mode {
+        settings.focused_mode = mode;
+        settings.unfocused_mode = mode;
+    }
+}
+
+/// Counts the frames that are drawn, if a test asks for it.
+fn count_frames(app: &mut App) {
+    let (Some(path), Some(render)) = (
+        std::env::var_os(FRAME_LOG).map(PathBuf::from),
+        app.get_sub_app_mut(RenderApp),
+    ) else {
+        return;
+    };
+    let frames = Arc::new(AtomicU64::new(0));
+    let drawn = frames.clone();
+    let count = move || {
+        drawn.fetch_add(1, Ordering::Relaxed);
+    };
+    render.add_systems(Core3d, count.in_set(Core3dSystems::MainPass));
+    std::thread::spawn(move || {
+        let mut last = None;
+        loop {
+            let now = frames.load(Ordering::Relaxed);
+            if last != Some(now) {
+                // A test that misses a number reads the next one.
+                let _ = std::fs::write(&path, format!("{now}\n"));
+                last = Some(now);
+            }
+            std::thread::sleep(FRAME_LOG_PERIOD);
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_outlives_its_display() {
+        let mut world = World::new();
+        world.add_observer(outlive_display);
+        let monitor = world
+            .spawn(Monitor {
+                name: None,
+                physical_height: 1080,
+                physical_width: 1920,
+                physical_position: IVec2::ZERO,
+                refresh_rate_millihertz: None,
+                scale_factor: 1.0,
+                video_modes: Vec::new(),
+            })
+            .id();
+        let window = world.spawn((Window::default(), OnMonitor(monitor))).id();
+        world.entity_mut(monitor).despawn();
+        assert!(world.get_entity(window).is_ok());
+    }
+}

@@ -1,0 +1,278 @@
+//! Wishes → what is shown, without a window.
+
+use std::{fs, sync::Arc};
+
+use glam::{DVec2, DVec3};
+use recto::{
+    manifest::{
+        exhibit::{Exhibit, LampKind, SideName},
+        eye::Eye,
+    },
+    optics::tier::Tier,
+    stage::Shown,
+    visitor::{Hand, Intent, hand::Picture},
+};
+
+const PICTURE: Picture = Picture {
+    aspect: 1.6,
+    width_mm: 400.0,
+    measured: true,
+};
+/// Lengths in mm agree when they differ by less.
+const NEAR_MM: f64 = 1e-6;
+
+fn exhibit() -> (tempfile::TempDir, Arc<Exhibit>) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    super::write_exhibit(folder.path());
+    let (exhibit, _) = Exhibit::read(folder.path()).expect("a sound exhibit");
+    (folder, Arc::new(exhibit))
+}
+
+fn hand(scene: &str) -> (tempfile::TempDir, Hand) {
+    let (folder, exhibit) = exhibit();
+    let (index, _) = exhibit.scene(scene).expect("the scene");
+    (
+        folder,
+        Hand::new(exhibit, index, Tier::Draft, PICTURE, false),
+    )
+}
+
+/// Lets everything come to rest, and says how long it took in seconds.
+fn settle(hand: &mut Hand) -> f64 {
+    const FRAME_S: f64 = 1.0 / 60.0;
+    const FRAMES: u32 = 600;
+    for frame in 0..FRAMES {
+        if !hand.is_moving() {
+            return f64::from(frame) * FRAME_S;
+        }
+        hand.advance(FRAME_S, true);
+    }
+    panic!("it never comes to rest");
+}
+
+/// The point of the table under a place of the picture.
+fn under(shown: &Shown, at: DVec2) -> DVec3 {
+    let size = shown.exhibit.drawing_of(&shown.scene).size_mm;
+    let eye = Eye::new(&shown.scene.camera, size);
+    eye.table_point(at, shown.aspect).expect("on the table")
+}
+
+fn drag(hand: &mut Hand, from: DVec2, to: DVec2) {
+    hand.apply(Intent::Take);
+    hand.apply(Intent::Drag { from, to });
+}
+
+#[test]
+fn a_drag_turns_a_whole_sheet_which_comes_back_to_rest() {
+    let (_folder, mut hand) = hand("whole");
+    let rest = hand.shown();
+    drag(&mut hand, DVec2::ZERO, DVec2::new(0.5, 0.0));
+    let turned = hand.shown();
+    assert_eq!(turned.scene, rest.scene, "the camera stays");
+    let normal = turned.pose * DVec3::Z;
+    assert!(normal.x > 0.3 && normal.y.abs() < 1e-9, "{normal}");
+    assert!(!hand.is_moving(), "a sheet that is held is held still");
+    assert!(!turned.both_sides, "its other side stays hidden");
+    drag(&mut hand, DVec2::ZERO, DVec2::new(9.0, 9.0));
+    assert!(
+        (hand.shown().pose * DVec3::Z).z > 0.49,
+        "it turns no further"
+    );
+    hand.apply(Intent::Release);
+    settle(&mut hand);
+    assert_eq!(hand.shown().pose, rest.pose);
+}
+
+#[test]
+fn a_drag_moves_a_detail_with_the_hand_and_stays_on_the_sheet() {
+    let (_folder, mut hand) = hand("detail");
+    let (from, to) = (DVec2::new(0.2, -0.3), DVec2::new(-0.1, 0.4));
+    let place = under(&hand.shown(), from);
+    drag(&mut hand, from, to);
+    let shown = hand.shown();
+    assert!((under(&shown, to) - place).length() < NEAR_MM);
+    assert_eq!(
+        shown.pose,
+        shown.exhibit.drawings[0].rest_pose(SideName::Recto)
+    );
+    drag(&mut hand, DVec2::ZERO, DVec2::new(-90.0, 0.0));
+    assert!(hand.shown().scene.camera.centre_mm.x <= 300.0);
+}
+
+#[test]
+fn zoom_keeps_the_place_under_the_pointer_and_ends_at_the_whole_sheet() {
+    let (_folder, mut hand) = hand("detail");
+    let at = DVec2::new(0.5, 0.25);
+    let before = hand.shown();
+    hand.apply(Intent::Zoom { at, factor: 2.0 });
+    settle(&mut hand);
+    let after = hand.shown();
+    assert!((after.scene.camera.width_mm - 30.0).abs() < NEAR_MM);
+    assert!((under(&after, at) - under(&before, at)).length() < NEAR_MM);
+    hand.apply(Intent::Zoom { at, factor: 1e-3 });
+    settle(&mut hand);
+    let camera = hand.shown().scene.camera;
+    assert!((camera.width_mm - 200.0 * 1.08 * PICTURE.aspect).abs() < NEAR_MM);
+    assert!((camera.centre_mm - DVec2::new(150.0, 100.0)).length() < NEAR_MM);
+}
+
+#[test]
+fn true_size_is_a_millimetre_for_a_millimetre_and_there_is_a_way_back() {
+    let (_folder, mut hand) = hand("detail");
+    assert_eq!(hand.at_true_size(), None);
+    hand.resize(Picture {
+        width_mm: 120.0,
+        ..PICTURE
+    });
+    let at = DVec2::ZERO;
+    hand.apply(Intent::TrueSize { at });
+    settle(&mut hand);
+    assert_eq!(hand.shown().scene.camera.width_mm, 120.0);
+    assert_eq!(hand.at_true_size(), Some(true));
+    hand.apply(Intent::TrueSize { at });
+    settle(&mut hand);
+    assert!((hand.shown().scene.camera.width_mm - 60.0).abs() < NEAR_MM);
+}
+
+#[test]
+fn a_flip_keeps_the_place_of_the_sheet_and_waits_for_its_other_side() {
+    for (scene, there) in [
+        ("detail", DVec2::new(200.0, 80.0)),
+        ("page", DVec2::new(100.0, 150.0)),
+    ] {
+        let (_folder, mut hand) = hand(scene);
+        let before = hand.shown();
+        hand.apply(Intent::Flip);
+        assert!(hand.shown().both_sides);
+        hand.advance(10.0, false);
+        assert_eq!(hand.shown().pose, before.pose, "not loaded yet");
+        let took = settle(&mut hand);
+        assert!((0.5..0.8).contains(&took), "{took}");
+        let after = hand.shown();
+        assert_eq!(after.scene.side, SideName::Verso);
+        assert!((after.scene.camera.centre_mm - there).length() < NEAR_MM);
+        // The verso lies up: where the recto's z was, there is the table.
+        assert!((after.pose * DVec3::Z + DVec3::Z).length() < 1e-9);
+        hand.apply(Intent::Flip);
+        settle(&mut hand);
+        let back = hand.shown();
+        assert_eq!(back.scene, before.scene);
+        assert!((back.pose * DVec3::X - DVec3::X).length() < 1e-9);
+    }
+}
+
+#[test]
+fn while_it_turns_over_its_near_edge_comes_towards_us_and_its_place_stays_in_view() {
+    for (scene, edge) in [("detail", DVec3::X), ("page", -DVec3::Y)] {
+        let (_folder, mut hand) = hand(scene);
+        let centre = under(&hand.shown(), DVec2::ZERO);
+        hand.apply(Intent::Flip);
+        for _ in 0..8 {
+            hand.advance(0.06, true);
+            let shown = hand.shown();
+            assert!((shown.pose * edge).z > 0.0);
+            let seen = under(&shown, DVec2::ZERO).truncate();
+            let place = (shown.pose * centre).truncate();
+            assert!((seen - place).length() < NEAR_MM, "{seen} {place}");
+        }
+    }
+}
+
+#[test]
+fn the_lamp_follows_the_hand_and_stays_in_the_room() {
+    let (_folder, mut hand) = hand("whole");
+    let as_read = hand.shown();
+    hand.apply(Intent::RaiseLamp(12.0));
+    let lamp = hand.lamp().expect("a lamp");
+    assert_eq!(lamp.words(), "lamp 12° high, from the left (180°)");
+    let LampKind::Distant { elevation, .. } = hand.shown().exhibit.lamps[0].kind else {
+        panic!("its kind stays");
+    };
+    assert_eq!(elevation.0, 12.0);
+    hand.apply(Intent::MoveLamp(DVec2::new(1.0, 1.0)));
+    let lamp = hand.lamp().expect("a lamp");
+    assert!(
+        lamp.azimuth_deg > 80.0 && lamp.azimuth_deg < 100.0,
+        "{lamp:?}"
+    );
+    hand.apply(Intent::Flip);
+    settle(&mut hand);
+    assert_eq!(hand.lamp(), Some(lamp), "it stays where it is");
+    hand.apply(Intent::Home);
+    assert_eq!(hand.shown().scene, as_read.scene);
+    assert_eq!(*hand.shown().exhibit, *as_read.exhibit);
+}
+
+#[test]
+fn states_overlays_and_scenes_go_round() {
+    let (_folder, mut hand) = hand("whole");
+    let mut states = Vec::new();
+    let mut overlays = Vec::new();
+    let mut scenes = Vec::new();
+    for _ in 0..4 {
+        hand.apply(Intent::StepState(1));
+        states.push(hand.shown().scene.state);
+        hand.apply(Intent::StepOverlay);
+        let on = hand.shown().scene.overlays;
+        overlays.push(
+            on.into_iter()
+                .map(|(overlay, _)| overlay)
+                .collect::<Vec<_>>(),
+        );
+    }
+    assert_eq!(states, [Some(0), None, Some(0), None]);
+    assert_eq!(overlays, [vec![0], vec![1], vec![0, 1], vec![]]);
+    for _ in 0..3 {
+        hand.apply(Intent::StepScene(-1));
+        scenes.push(hand.shown().scene.id);
+    }
+    assert_eq!(scenes, ["page", "detail", "whole"]);
+    hand.apply(Intent::StepOverlay);
+    hand.apply(Intent::Opacity(0.1));
+    let [(_, opacity)] = hand.shown().scene.overlays[..] else {
+        panic!("one overlay");
+    };
+    assert!((opacity - 0.8).abs() < 1e-9);
+    hand.apply(Intent::Flip);
+    settle(&mut hand);
+    assert!(
+        hand.shown().scene.overlays.is_empty(),
+        "they are the recto's"
+    );
+}
+
+#[test]
+fn a_new_version_keeps_the_view_and_takes_what_the_hand_left_alone() {
+    let (folder, mut hand) = hand("detail");
+    hand.apply(Intent::StepState(1));
+    hand.apply(Intent::RaiseLamp(60.0));
+    let manifest = folder.path().join("exhibit.toml");
+    let text = super::MANIFEST
+        .replace("width_mm = 60", "width_mm = 50")
+        .replace("id = \"whole\"", "id = \"first\"");
+    fs::write(&manifest, text).expect("the manifest is written");
+    let (new, _) = Exhibit::read(folder.path()).expect("it is sound");
+    hand.replace(Arc::new(new));
+    let shown = hand.shown();
+    assert_eq!(shown.scene.id, "detail");
+    assert_eq!(shown.scene.state, Some(0));
+    assert_eq!(shown.scene.camera.width_mm, 50.0);
+    assert_eq!(hand.lamp().map(|lamp| lamp.elevation_deg), Some(60.0));
+    fs::write(&manifest, super::MANIFEST.replace("detail", "gone")).expect("it is written");
+    let (new, _) = Exhibit::read(folder.path()).expect("it is sound");
+    hand.replace(Arc::new(new));
+    assert_eq!(hand.shown().scene.id, "whole");
+}
+
+#[test]
+fn a_scene_that_cannot_be_shown_is_passed_over() {
+    let (_folder, mut hand) = hand("whole");
+    assert!(!hand.retreat(), "nothing was shown yet");
+    hand.keep();
+    hand.apply(Intent::StepScene(1));
+    assert_eq!(hand.shown().scene.id, "detail");
+    assert!(hand.retreat());
+    assert_eq!(hand.shown().scene.id, "whole");
+    hand.apply(Intent::StepScene(1));
+    assert_eq!(hand.shown().scene.id, "page");
+}

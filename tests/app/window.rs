@@ -1,0 +1,182 @@
+//! The program in a real window, on an X server of its own.
+
+use std::{
+    fs,
+    io::{BufRead, BufReader, Read},
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// Set to skip these tests on a machine that cannot have an X server.
+const SKIP: &str = "RECTO_SKIP_WINDOW";
+/// How long anything may take on a slow machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// Without a frame for so long, the window has settled.
+const SETTLED: Duration = Duration::from_secs(3);
+/// The promise: so long without a single frame.
+const IDLE: Duration = Duration::from_secs(10);
+const LOOK: Duration = Duration::from_millis(100);
+
+/// A process that ends with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// An X server and the display that it serves.
+fn x_server() -> (Running, String) {
+    let started = Command::new("Xvfb")
+        .args([
+            "-displayfd",
+            "1",
+            "-screen",
+            "0",
+            "640x480x24",
+            "-nolisten",
+            "tcp",
+        ])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn();
+    let mut server = Running(started.unwrap_or_else(|error| {
+        panic!(
+            "Xvfb does not start ({error}); install it with: sudo apt-get install xvfb\n\
+             or set {SKIP}=1 to go without the window's tests"
+        )
+    }));
+    let mut number = String::new();
+    let output = server.0.stdout.take().expect("its output");
+    BufReader::new(output)
+        .read_line(&mut number)
+        .expect("the display's number");
+    (server, format!(":{}", number.trim()))
+}
+
+/// `recto show` on an exhibit.
+struct Window {
+    program: Running,
+    words: thread::JoinHandle<String>,
+    log: PathBuf,
+}
+
+impl Window {
+    fn open(display: &str, exhibit: &Path, log: PathBuf) -> Self {
+        let mut program = Running(
+            Command::new(env!("CARGO_BIN_EXE_recto"))
+                .arg("show")
+                .arg(exhibit)
+                .args(["--size", "320x240", "--tier", "draft"])
+                .env("DISPLAY", display)
+                .env("RECTO_FRAME_LOG", &log)
+                .env_remove("WAYLAND_DISPLAY")
+                .stderr(Stdio::piped())
+                .spawn()
+                .expect("the program starts"),
+        );
+        let mut stderr = program.0.stderr.take().expect("its words");
+        let words = thread::spawn(move || {
+            let mut words = String::new();
+            // What is not text is of no interest here.
+            let _ = stderr.read_to_string(&mut words);
+            words
+        });
+        Self {
+            program,
+            words,
+            log,
+        }
+    }
+
+    /// How many frames it has drawn.
+    fn frames(&mut self) -> u64 {
+        if let Some(status) = self.program.0.try_wait().expect("its status") {
+            panic!("the window closed: {status}");
+        }
+        let text = fs::read_to_string(&self.log).unwrap_or_default();
+        text.trim().parse().unwrap_or_default()
+    }
+
+    /// Waits until more than `before` frames are drawn, and then none for a while.
+    fn settle_after(&mut self, before: u64) -> u64 {
+        let start = Instant::now();
+        let (mut last, mut since) = (self.frames(), Instant::now());
+        while last <= before || since.elapsed() < SETTLED {
+            assert!(start.elapsed() < PATIENCE, "it draws on: {last} frames");
+            thread::sleep(LOOK);
+            let now = self.frames();
+            if now != last {
+                (last, since) = (now, Instant::now());
+            }
+        }
+        last
+    }
+
+    /// Closes it and returns what it wrote on standard error.
+    fn close(mut self) -> String {
+        self.program.0.kill().expect("it was running");
+        self.words.join().expect("its words")
+    }
+}
+
+#[test]
+fn the_window_rests_reloads_and_outlives_a_faulty_save() {
+    if std::env::var_os(SKIP).is_some() {
+        eprintln!("skipped: {SKIP} is set");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    super::write_exhibit(folder.path());
+    let logs = tempfile::tempdir().expect("a temporary folder");
+    let (_server, display) = x_server();
+    let mut window = Window::open(&display, folder.path(), logs.path().join("frames"));
+
+    let settled = window.settle_after(0);
+    thread::sleep(IDLE);
+    assert_eq!(window.frames(), settled, "an idle window draws nothing");
+
+    super::draw_paper(&folder.path().join("paper.png"), 90);
+    let repainted = window.settle_after(settled);
+
+    let manifest = folder.path().join("exhibit.toml");
+    let faulty = super::MANIFEST.replace("size_mm = [300.0", "size_mn = [300.0");
+    fs::write(&manifest, faulty).expect("the manifest is written");
+    thread::sleep(SETTLED);
+    assert_eq!(window.frames(), repainted, "the last good exhibit stays");
+
+    // As editors do: the old file goes, a new one comes.
+    let saved = folder.path().join("exhibit.toml.part");
+    fs::write(&saved, super::MANIFEST.replace("Two", "Some")).expect("the manifest is written");
+    fs::remove_file(&manifest).expect("the old one goes");
+    fs::rename(&saved, &manifest).expect("the new one comes");
+    window.settle_after(repainted);
+
+    let words = window.close();
+    assert!(words.contains("exhibit.toml:7:1"), "{words}");
+    assert!(words.contains("did you mean \"size_mm\"?"), "{words}");
+    assert_eq!(words.matches("size_mn").count(), 2, "told once: {words}");
+}
+
+#[test]
+fn without_a_display_there_is_advice() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    super::write_exhibit(folder.path());
+    for display in ["", ":54321"] {
+        let output = Command::new(env!("CARGO_BIN_EXE_recto"))
+            .arg("show")
+            .arg(folder.path())
+            .env("DISPLAY", display)
+            .env_remove("WAYLAND_DISPLAY")
+            .output()
+            .expect("the program starts");
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{words}");
+        assert!(words.contains("recto render"), "{words}");
+    }
+}

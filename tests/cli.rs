@@ -1,0 +1,128 @@
+//! The command line as a contract: exit codes, streams and files.
+
+#[path = "cli/commands.rs"]
+mod commands;
+#[path = "cli/render.rs"]
+mod render;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+use recto::maps::encode;
+use tempfile::TempDir;
+
+/// Edge of the sheet's picture in pixels.
+const EDGE: u32 = 16;
+
+fn recto() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_recto"))
+}
+
+fn run(arguments: &[&str]) -> Output {
+    recto().args(arguments).output().unwrap()
+}
+
+#[track_caller]
+fn code(output: &Output, code: i32) -> String {
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    stderr
+}
+
+fn stdout(output: &Output) -> &str {
+    std::str::from_utf8(&output.stdout).unwrap()
+}
+
+/// An exhibit of one small sheet in two scenes, removed when it is dropped.
+struct Sheet {
+    root: TempDir,
+}
+
+impl Sheet {
+    fn new() -> Self {
+        let sheet = Self {
+            root: tempfile::tempdir().unwrap(),
+        };
+        fs::create_dir(sheet.exhibit()).unwrap();
+        write_picture(&sheet.exhibit().join("sheet.png"), None);
+        let grey = [150; (EDGE * EDGE) as usize];
+        encode::save_png_grey8(&sheet.exhibit().join("verso.png"), EDGE, EDGE, &grey, None)
+            .unwrap();
+        fs::write(
+            sheet.exhibit().join("exhibit.toml"),
+            r##"
+[[drawing]]
+id = "sheet"
+size_mm = [100, 100]
+recto.albedo = "sheet.png"
+verso.albedo = "verso.png"
+
+[[drawing.overlay]]
+id = "picture"
+kind = "picture"
+file = "sheet.png"
+
+[[scene]]
+id = "whole"
+
+[[scene]]
+id = "tilted"
+camera = { tilt_deg = 40, distance_mm = 300 }
+overlays = [{ id = "picture", opacity = 0.5 }]
+"##,
+        )
+        .unwrap();
+        sheet
+    }
+
+    fn exhibit(&self) -> PathBuf {
+        self.root.path().join("exhibit")
+    }
+
+    fn out(&self, name: &str) -> PathBuf {
+        self.root.path().join(name)
+    }
+
+    fn render(&self, out: &Path, more: &[&str]) -> Command {
+        let mut command = recto();
+        command
+            .arg("render")
+            .arg(self.exhibit())
+            .args(["--size", "64x64", "--out"])
+            .arg(out)
+            .args(more);
+        command
+    }
+}
+
+/// A colourful picture that is nowhere symmetrical.
+fn write_picture(path: &Path, dpi: Option<f64>) {
+    let pixels: Vec<[u8; 3]> = (0..EDGE * EDGE)
+        .map(|i| [i % 256, 40 + i / EDGE * 12, 255 - i % EDGE * 15].map(|v| v as u8))
+        .collect();
+    encode::save_png_rgb8(path, EDGE, EDGE, &pixels, dpi).unwrap();
+}
+
+/// The files in a folder, by name.
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Runs a command whose standard output is closed from the start.
+fn with_closed_stdout(command: &mut Command) -> Output {
+    let mut child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    child.wait_with_output().unwrap()
+}

@@ -1,0 +1,242 @@
+//! Everything that needs no graphics device.
+
+use std::fs;
+
+use super::{Sheet, code, files, recto, run, stdout, with_closed_stdout, write_picture};
+
+#[test]
+fn wrong_usage_ends_with_2() {
+    let sheet = Sheet::new();
+    let exhibit = sheet.exhibit();
+    let exhibit = exhibit.to_str().unwrap();
+    let out = sheet.out("x.png");
+    let out = out.to_str().unwrap();
+    let render = |more: [&'static str; 2]| {
+        let [option, value] = more;
+        vec!["render", exhibit, "--out", out, option, value]
+    };
+    for arguments in [
+        vec!["render"],
+        vec!["render", exhibit],
+        vec!["render", exhibit, "--out", "x.jpg"],
+        vec!["check"],
+        vec!["check", exhibit, "--explode"],
+        vec!["sample", "x", "--dpi", "5"],
+        vec!["sample", "x", "--dpi", "NaN"],
+        vec!["new", "x"],
+        vec!["new", "x", "--albedo", "a.png", "--size-mm", "10"],
+        vec!["schema", "--installation"],
+        vec!["schema", "--capture"],
+        vec!["show", exhibit, "--kiosk"],
+        render(["--size", "0x10"]),
+        render(["--size", "16385x1"]),
+        render(["--size", "-1x10"]),
+        render(["--side", "front"]),
+        render(["--tier", "best"]),
+        render(["--tier", "study"]),
+        render(["--compare", "curtain:state:a,state:b"]),
+        render(["--all-scenes", "--scene=whole"]),
+    ] {
+        let output = run(&arguments);
+        let stderr = code(&output, 2);
+        assert!(!stderr.is_empty(), "{arguments:?}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+    }
+    assert_eq!(files(sheet.root.path()), ["exhibit"]);
+}
+
+#[test]
+fn tiers_that_are_not_shown_name_those_that_are() {
+    let stderr = code(
+        &run(&["render", "x", "--out", "x.png", "--tier", "isle"]),
+        2,
+    );
+    assert!(stderr.contains("isle"), "{stderr}");
+    assert!(stderr.contains("draft, gallery, lambert"), "{stderr}");
+}
+
+#[test]
+fn commands_of_later_versions_never_succeed() {
+    for command in [
+        "reference",
+        "bsdf",
+        "tradeoff",
+        "prepare",
+        "import",
+        "export",
+        "register",
+        "supervise",
+        "publish",
+    ] {
+        for more in [&["x", "--out", "y", "--samples", "4"][..], &["--help"], &[]] {
+            let output = recto().arg(command).args(more).output().unwrap();
+            let stderr = code(&output, 2);
+            assert_eq!(stderr.lines().count(), 1, "{stderr}");
+            assert!(stderr.contains(command), "{stderr}");
+            assert!(output.stdout.is_empty());
+        }
+        let help = run(&["--help"]);
+        assert!(stdout(&help).contains(command));
+    }
+}
+
+#[test]
+fn help_and_version_are_results() {
+    for arguments in [
+        vec!["--help"],
+        vec!["render", "--help"],
+        vec!["--version"],
+        vec!["help", "check"],
+    ] {
+        let output = run(&arguments);
+        assert_eq!(code(&output, 0), "");
+        assert!(!output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn a_missing_exhibit_ends_with_1() {
+    for arguments in [
+        vec!["check", "/nonexistent"],
+        vec!["show", "/nonexistent"],
+        vec!["/nonexistent"],
+        vec!["render", "/nonexistent", "--out", "x.png"],
+    ] {
+        let output = run(&arguments);
+        let stderr = code(&output, 1);
+        assert_eq!(
+            stderr,
+            "/nonexistent: found no such file; allowed: an exhibit's folder with an \
+             exhibit.toml, or that file itself; check the path, or begin an exhibit with `recto \
+             new`\n"
+        );
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn the_schema_is_json() {
+    let output = run(&["schema"]);
+    assert_eq!(code(&output, 0), "");
+    let schema: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(schema["properties"]["drawing"].is_object());
+}
+
+#[test]
+fn a_new_exhibit_is_sound() {
+    let root = tempfile::tempdir().unwrap();
+    let (picture, folder) = (root.path().join("my sheet.png"), root.path().join("new"));
+    write_picture(&picture, None);
+    let new = |more: &[&str]| {
+        let mut command = recto();
+        command
+            .arg("new")
+            .arg(&folder)
+            .arg("--albedo")
+            .arg(&picture);
+        command.args(more).output().unwrap()
+    };
+    // Neither the picture nor the curator says how large the sheet is.
+    let stderr = code(&new(&[]), 2);
+    assert!(stderr.contains("--size-mm"), "{stderr}");
+    let stderr = code(&new(&["--size-mm", "0x10"]), 1);
+    assert!(stderr.contains("size_mm"), "{stderr}");
+    assert!(!folder.exists());
+
+    let output = new(&["--size-mm", "210x210"]);
+    code(&output, 0);
+    let manifest = folder.join("exhibit.toml");
+    assert_eq!(stdout(&output).trim_end(), manifest.to_str().unwrap());
+    let text = fs::read_to_string(&manifest).unwrap();
+    assert!(text.contains("size_mm = [210.0, 210.0]"), "{text}");
+    let check = recto().arg("check").arg(&folder).output().unwrap();
+    assert_eq!(code(&check, 0), "");
+    assert!(stdout(&check).contains("sound"));
+
+    let stderr = code(&new(&["--size-mm", "210x210"]), 1);
+    assert!(stderr.contains("already"), "{stderr}");
+    assert_eq!(fs::read_to_string(&manifest).unwrap(), text);
+}
+
+#[test]
+fn a_new_exhibit_takes_its_size_from_the_picture() {
+    let root = tempfile::tempdir().unwrap();
+    let (picture, folder) = (root.path().join("a.png"), root.path().join("new"));
+    write_picture(&picture, Some(25.4));
+    let mut command = recto();
+    command
+        .arg("new")
+        .arg(&folder)
+        .arg("--albedo")
+        .arg(&picture);
+    code(&command.output().unwrap(), 0);
+    let text = fs::read_to_string(folder.join("exhibit.toml")).unwrap();
+    assert!(text.contains("size_mm = [16.0, 16.0]"), "{text}");
+}
+
+#[test]
+fn check_tells_people_and_programs_the_same() {
+    let sheet = Sheet::new();
+    let check = |more: &[&str]| {
+        recto()
+            .arg("check")
+            .arg(sheet.exhibit())
+            .args(more)
+            .output()
+    };
+    let short = check(&[]).unwrap();
+    assert_eq!(code(&short, 0), "");
+    assert!(!stdout(&short).contains("albedo"));
+    let long = check(&["--explain"]).unwrap();
+    code(&long, 0);
+    for words in [
+        "Scene whole",
+        "albedo map",
+        "sheet.png",
+        "MiB",
+        "assumed",
+        "reference 7",
+    ] {
+        assert!(stdout(&long).contains(words), "{words}: {}", stdout(&long));
+    }
+    let json = check(&["--json"]).unwrap();
+    code(&json, 0);
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(json["sound"], true);
+    assert_eq!(json["scenes"][1]["id"], "tilted");
+    assert_eq!(json["scenes"][1]["maps"][1]["role"], "overlay");
+    let lux = json["scenes"][0]["exposure"]["lux"].as_f64().unwrap();
+    assert!(
+        (lux - 1000.0 * 45f64.to_radians().cos()).abs() < 1e-6,
+        "{lux}"
+    );
+
+    // A picture that ends early is found, by each form.
+    let picture = sheet.exhibit().join("sheet.png");
+    let bytes = fs::read(&picture).unwrap();
+    fs::write(&picture, &bytes[..bytes.len() - 60]).unwrap();
+    let refused = check(&[]).unwrap();
+    let stderr = code(&refused, 1);
+    assert!(stderr.contains("exhibit.toml:5:16: "), "{stderr}");
+    assert!(refused.stdout.is_empty());
+    let json = check(&["--json"]).unwrap();
+    assert_eq!(code(&json, 1), stderr);
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(json["sound"], false);
+    assert_eq!(json["faults"][0]["line"], 5);
+}
+
+#[test]
+fn a_closed_standard_output_is_no_panic() {
+    let sheet = Sheet::new();
+    let mut check = recto();
+    check.arg("check").arg(sheet.exhibit()).arg("--explain");
+    let mut schema = recto();
+    schema.arg("schema");
+    let mut help = recto();
+    help.arg("--help");
+    for command in [&mut check, &mut schema, &mut help] {
+        let output = with_closed_stdout(command);
+        assert_eq!(code(&output, 0), "");
+    }
+}

@@ -1,0 +1,18 @@
+//! Frames of the shipped program on whatever Vulkan driver there is, judged by closed forms
+//! and by real data.
+
+mod support;
+
+#[path = "support/room.rs"]
+mod room;
+#[path = "support/show_through.rs"]
+mod show_through;
+
+#[path = "frames/colour.rs"]
+mod colour;
+#[path = "frames/lamps.rs"]
+mod lamps;
+#[path = "frames/layers.rs"]
+mod layers;
+#[path = "frames/sheets.rs"]
+mod sheets;

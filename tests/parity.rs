@@ -1,0 +1,885 @@
+//! The shipped physics on the graphics device against its f64 twins, at the extremes of every
+//! parameter. The twins get the f32 inputs widened, so that only the arithmetic differs.
+
+use std::{cell::Cell, f64::consts::PI};
+
+use bevy::render::render_resource::{
+    ShaderType,
+    encase::{StorageBuffer, internal::WriteInto},
+};
+use glam::{DVec3, Vec3};
+use recto::{
+    optics::{
+        fresnel::{fresnel_dielectric, fresnel_schlick, normal_reflectance},
+        lamp::{GRIDS, Incidence, Light, Shape, gauss_legendre},
+        microfacet::{d_ggx, v_smith},
+        table::{
+            ALPHA_FIT_MIN, AlphaPolynomial, Interface, InterfaceMean, InterfaceTable, LOST_TERMS,
+            MU_TERMS,
+        },
+        tier::{Facing, Surface, brdf_draft, brdf_gallery, brdf_lambert, facing},
+    },
+    sheet::{
+        PAPER_BSDF,
+        uniform::{InterfaceUniform, LightUniform},
+    },
+};
+
+#[path = "support/gpu.rs"]
+mod gpu;
+
+use gpu::{Gpu, entry};
+
+/// Some thousand f32 roundings: room for any driver's division and square root.
+const RELATIVE: f64 = 2e-4;
+/// Below what a display or a half float tells from black.
+const ABSOLUTE: f64 = 1e-8;
+/// Near-mirrors divide by α², which the rounding of a direction reaches.
+const RELATIVE_NEAR_MIRROR: f64 = 2e-3;
+/// From this roughness down a surface is a near-mirror.
+const NEAR_MIRROR: f64 = 1e-3;
+/// Rounding of the dot or cross product of two unit vectors, six operations of half a ULP of 1.
+const UNIT_PRODUCT: f64 = 6.0 * 6e-8;
+/// f(i, o) against f(o, i), both in f32.
+const RECIPROCITY: f64 = 1e-4;
+
+/// A result of the device, its twin, and how far apart they may be.
+#[derive(Clone, Copy)]
+struct Pair {
+    gpu: f32,
+    cpu: f64,
+    allowed: f64,
+}
+
+impl Pair {
+    fn new(gpu: f32, cpu: f64, relative: f64) -> Self {
+        let allowed = relative * cpu.abs() + ABSOLUTE;
+        Self { gpu, cpu, allowed }
+    }
+
+    /// Error in units of what is allowed; anything not finite or negative is beyond measure.
+    fn error(&self) -> f64 {
+        if self.gpu.is_finite() && self.cpu.is_finite() && self.gpu >= 0.0 && self.cpu >= 0.0 {
+            (f64::from(self.gpu) - self.cpu).abs() / self.allowed
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
+/// The largest error, in units of what is allowed, or the worst case in words.
+fn judge(name: &str, pairs: &[Pair], describe: impl Fn(usize) -> String) -> Result<f64, String> {
+    assert!(!pairs.is_empty());
+    let (worst, error) = pairs
+        .iter()
+        .map(Pair::error)
+        .enumerate()
+        .fold(
+            (0, 0.0),
+            |worst, each| if each.1 > worst.1 { each } else { worst },
+        );
+    let Pair { gpu, cpu, allowed } = pairs[worst];
+    eprintln!(
+        "{name}: {} numbers, worst {error:.3} of what is allowed",
+        pairs.len()
+    );
+    if error <= 1.0 {
+        return Ok(error);
+    }
+    let faulty = pairs.iter().filter(|pair| pair.error() > 1.0).count();
+    Err(format!(
+        "{name}: {faulty} of {} numbers differ; worst {gpu:e}, not {cpu:e} ± {allowed:e}, for {}",
+        pairs.len(),
+        describe(worst)
+    ))
+}
+
+/// `count` values from `low` to `high`, evenly spaced in the logarithm, both ends included.
+fn log_spaced(low: f64, high: f64, count: usize) -> Vec<f32> {
+    let step = (high / low).ln() / (count - 1) as f64;
+    (0..count)
+        .map(|i| ((low.ln() + step * i as f64).exp() as f32).min(high as f32))
+        .collect()
+}
+
+/// Every combination of the values of each parameter.
+fn grid(parameters: &[Vec<f32>]) -> Vec<Vec<f32>> {
+    parameters.iter().fold(vec![Vec::new()], |cases, values| {
+        cases
+            .iter()
+            .flat_map(|case| {
+                values
+                    .iter()
+                    .map(move |&value| case.iter().copied().chain([value]).collect())
+            })
+            .collect()
+    })
+}
+
+/// A seeded sequence (SplitMix64, Steele et al. 2014).
+struct Seeded(Cell<u64>);
+
+impl Seeded {
+    fn new(seed: u64) -> Self {
+        Self(Cell::new(seed))
+    }
+
+    fn bits(&self) -> u64 {
+        let state = self.0.get().wrapping_add(0x9e37_79b9_7f4a_7c15);
+        self.0.set(state);
+        let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// In [0, 1).
+    fn unit(&self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Evenly spread in the logarithm, and one time in eight at either end.
+    fn log(&self, low: f64, high: f64) -> f64 {
+        match self.bits() % 16 {
+            0 => low,
+            1 => high,
+            _ => low * (high / low).powf(self.unit()),
+        }
+    }
+
+    /// As [`Self::log`], or 0.
+    fn log_or_zero(&self, low: f64, high: f64) -> f64 {
+        if self.bits().is_multiple_of(16) {
+            0.0
+        } else {
+            self.log(low, high)
+        }
+    }
+
+    fn pick<T: Copy>(&self, of: &[T]) -> T {
+        of[(self.bits() % of.len() as u64) as usize]
+    }
+
+    /// A unit vector, evenly over the sphere.
+    fn direction(&self) -> DVec3 {
+        let z = 2.0 * self.unit() - 1.0;
+        let (sin, cos) = (2.0 * PI * self.unit()).sin_cos();
+        DVec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z
+    }
+}
+
+/// A function of numbers: how the shader calls it, its twin, its inputs and its tolerance.
+struct Twins {
+    name: &'static str,
+    body: String,
+    twin: fn(&[f64]) -> Vec<f64>,
+    relative: fn(&[f64]) -> f64,
+    cases: Vec<Vec<f32>>,
+}
+
+impl Twins {
+    fn outputs(&self) -> usize {
+        (self.twin)(&widen(&self.cases[0])).len()
+    }
+
+    fn found(&self, gpu: &Gpu, physics: &str) -> Vec<f32> {
+        let (cases, arity, outputs) = (self.cases.len(), self.cases[0].len(), self.outputs());
+        let body = format!("let at = index * {arity}u;\n{}", self.body);
+        let entry = entry("f32", cases, outputs, &body);
+        let text = format!("{physics}\n{entry}");
+        gpu.run(&text, &self.cases.concat(), cases, outputs)
+    }
+
+    fn compare(&self, gpu: &Gpu, physics: &str) -> Result<f64, String> {
+        let found = self.found(gpu, physics);
+        let pairs: Vec<Pair> = self
+            .cases
+            .iter()
+            .zip(found.chunks(self.outputs()))
+            .flat_map(|(case, found)| {
+                let case = widen(case);
+                let relative = (self.relative)(&case);
+                found
+                    .iter()
+                    .zip((self.twin)(&case))
+                    .map(move |(&gpu, cpu)| Pair::new(gpu, cpu, relative))
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        let case = |i: usize| format!("{:?}", self.cases[i / self.outputs()]);
+        judge(self.name, &pairs, case)
+    }
+}
+
+fn widen(case: &[f32]) -> Vec<f64> {
+    case.iter().map(|&x| f64::from(x)).collect()
+}
+
+fn cosines() -> Vec<f32> {
+    log_spaced(1e-4, 1.0, 60)
+}
+
+fn alphas() -> Vec<f32> {
+    log_spaced(1e-4, 1.0, 40)
+}
+
+fn fresnel() -> Twins {
+    // η − 1 evenly spaced, and 1 itself: no interface at all.
+    let mut etas: Vec<f32> = log_spaced(1e-6, 2.0, 60).iter().map(|x| 1.0 + x).collect();
+    etas.push(1.0);
+    // Cosines near 1 as well as near 0, and both ends.
+    let mut cosines = cosines();
+    cosines.extend(log_spaced(1e-7, 0.5, 40).iter().map(|x| 1.0 - x));
+    cosines.push(0.0);
+    Twins {
+        name: "fresnel_dielectric",
+        body: "found[to] = fresnel_dielectric(given[at], given[at + 1u]);".into(),
+        twin: |x| vec![fresnel_dielectric(x[0], x[1])],
+        relative: |_| RELATIVE,
+        cases: grid(&[cosines, etas]),
+    }
+}
+
+fn schlick() -> Twins {
+    let mut cosines = cosines();
+    cosines.extend([0.0, 0.25, 0.5, 0.75]);
+    let mut f_normal = log_spaced(1e-8, 1.0, 30);
+    f_normal.push(0.0);
+    Twins {
+        name: "fresnel_schlick",
+        body: "found[to] = fresnel_schlick(given[at], given[at + 1u]);".into(),
+        twin: |x| vec![fresnel_schlick(x[0], x[1])],
+        relative: |_| RELATIVE,
+        cases: grid(&[cosines, f_normal]),
+    }
+}
+
+fn near_mirror(alpha: f64) -> f64 {
+    if alpha < NEAR_MIRROR {
+        RELATIVE_NEAR_MIRROR
+    } else {
+        RELATIVE
+    }
+}
+
+fn distribution() -> Twins {
+    let mut sin2 = log_spaced(1e-14, 1.0, 100);
+    sin2.push(0.0);
+    Twins {
+        name: "d_ggx",
+        body: "found[to] = d_ggx(given[at], given[at + 1u]);".into(),
+        twin: |x| vec![d_ggx(x[0], x[1])],
+        relative: |x| near_mirror(x[1]),
+        cases: grid(&[sin2, alphas()]),
+    }
+}
+
+fn visibility() -> Twins {
+    Twins {
+        name: "v_smith",
+        body: "found[to] = v_smith(given[at], given[at + 1u], given[at + 2u]);".into(),
+        twin: |x| vec![v_smith(x[0], x[1], x[2])],
+        relative: |x| near_mirror(x[2]),
+        cases: grid(&[cosines(), cosines(), alphas()]),
+    }
+}
+
+/// Reads a `Surface`, a `Facing` and the tabulated interface from the numbers of a case.
+const BRDF_INPUTS: &str = "
+    let s = Surface(vec3(given[at], given[at + 1u], given[at + 2u]),
+        given[at + 3u], given[at + 4u], given[at + 5u], given[at + 6u]);
+    let g = Facing(given[at + 7u], given[at + 8u], given[at + 9u], given[at + 10u]);
+    let at_i = Interface(given[at + 11u], given[at + 12u]);
+    let at_o = Interface(given[at + 13u], given[at + 14u]);
+    let mean = InterfaceMean(given[at + 15u], given[at + 16u], given[at + 17u]);";
+
+fn brdf_body(call: &str) -> String {
+    format!("{BRDF_INPUTS} let f = {call}; {FOUND_COLOUR}")
+}
+
+/// Writes a colour `f`.
+const FOUND_COLOUR: &str = "found[to] = f.x; found[to + 1u] = f.y; found[to + 2u] = f.z;";
+
+type BrdfInputs = (Surface, Facing, Interface, Interface, InterfaceMean);
+
+/// Twin of [`BRDF_INPUTS`].
+fn brdf_inputs(x: &[f64]) -> BrdfInputs {
+    let s = Surface {
+        albedo: DVec3::from_slice(x),
+        alpha: x[3],
+        eta: x[4],
+        f_normal: x[5],
+        specular: x[6],
+    };
+    let g = Facing {
+        mu_i: x[7],
+        mu_o: x[8],
+        cos_d: x[9],
+        sin2_h: x[10],
+    };
+    let interface = |t: f64, lost: f64| Interface { t, lost };
+    let mean = InterfaceMean {
+        compensation: x[15],
+        t_mean: x[16],
+        capture: x[17],
+    };
+    (s, g, interface(x[11], x[12]), interface(x[13], x[14]), mean)
+}
+
+fn brdf_cases() -> Vec<Vec<f32>> {
+    let seeded = Seeded::new(1);
+    (0..200_000)
+        .map(|_| {
+            let eta = 1.0 + seeded.log_or_zero(1e-4, 2.0);
+            let share = || seeded.log_or_zero(1e-5, 1.0);
+            let cosine = || seeded.log(1e-4, 1.0);
+            let case = [
+                seeded.log(1e-5, 1.0),
+                seeded.log(1e-5, 1.0),
+                seeded.log(1e-5, 1.0),
+                seeded.log(1e-4, 1.0),
+                eta,
+                normal_reflectance(eta),
+                share(),
+                cosine(),
+                cosine(),
+                seeded.log_or_zero(1e-4, 1.0),
+                seeded.log_or_zero(1e-14, 1.0),
+                share(),
+                share(),
+                share(),
+                share(),
+                seeded.log_or_zero(1e-5, 10.0),
+                share(),
+                1.0 + seeded.log_or_zero(1e-5, 4.0),
+            ];
+            case.map(|x| x as f32).to_vec()
+        })
+        .collect()
+}
+
+fn brdfs() -> [Twins; 3] {
+    [
+        Twins {
+            name: "brdf_lambert",
+            body: brdf_body("brdf_lambert(s)"),
+            twin: |x| brdf_lambert(&brdf_inputs(x).0).to_array().to_vec(),
+            relative: |_| RELATIVE,
+            cases: brdf_cases(),
+        },
+        Twins {
+            name: "brdf_draft",
+            body: brdf_body("brdf_draft(s, g)"),
+            twin: |x| {
+                let (s, g, ..) = brdf_inputs(x);
+                brdf_draft(&s, &g).to_array().to_vec()
+            },
+            relative: |x| near_mirror(x[3]),
+            cases: brdf_cases(),
+        },
+        Twins {
+            name: "brdf_gallery",
+            body: brdf_body("brdf_gallery(s, g, at_i, at_o, mean)"),
+            twin: |x| {
+                let (s, g, at_i, at_o, mean) = brdf_inputs(x);
+                brdf_gallery(&s, &g, &at_i, &at_o, &mean)
+                    .to_array()
+                    .to_vec()
+            },
+            relative: |x| near_mirror(x[3]),
+            cases: brdf_cases(),
+        },
+    ]
+}
+
+#[test]
+fn functions_of_numbers() {
+    let gpu = Gpu::new();
+    for twins in [fresnel(), schlick(), distribution(), visibility()]
+        .into_iter()
+        .chain(brdfs())
+    {
+        twins.compare(&gpu, PAPER_BSDF).unwrap();
+    }
+}
+
+/// Unit vectors in f32: normal, light, eye; and a roughness.
+fn facing_cases() -> Vec<Vec<f32>> {
+    let seeded = Seeded::new(2);
+    (0..200_000)
+        .map(|_| {
+            // Normals as without a normal map, of faint relief, and of any kind.
+            let n = match seeded.bits() % 4 {
+                0 => DVec3::Z,
+                1 => (DVec3::Z + seeded.direction() * 1e-3).normalize(),
+                _ => seeded.direction(),
+            };
+            let aside = seeded.direction().reject_from(n).normalize();
+            let mu_o = seeded.log(1e-4, 1.0);
+            let v = n * mu_o + aside * (1.0 - mu_o * mu_o).max(0.0).sqrt();
+            let mirrored = 2.0 * n.dot(v) * n - v;
+            let l = match seeded.bits() % 8 {
+                0 => seeded.direction(),
+                // From straight opposite the eye: no half vector.
+                1 => -v + seeded.direction() * seeded.log_or_zero(1e-7, 1e-3),
+                // About the mirror direction.
+                _ => mirrored + seeded.direction() * seeded.log_or_zero(1e-7, 1.0),
+            };
+            let l = l.try_normalize().unwrap_or(n);
+            let [n, l, v] = [n, l, v].map(|of| of.as_vec3().to_array());
+            [&n[..], &l, &v, &[seeded.log(1e-4, 1.0) as f32]].concat()
+        })
+        .collect()
+}
+
+fn facings() -> Twins {
+    Twins {
+        name: "facing",
+        body: "let g = facing(vec3(given[at], given[at + 1u], given[at + 2u]),
+                vec3(given[at + 3u], given[at + 4u], given[at + 5u]),
+                vec3(given[at + 6u], given[at + 7u], given[at + 8u]));
+            found[to] = g.mu_i;
+            found[to + 1u] = g.mu_o;
+            found[to + 2u] = g.cos_d;
+            found[to + 3u] = g.sin2_h;
+            found[to + 4u] = d_ggx(g.sin2_h, given[at + 9u]);"
+            .into(),
+        twin: |x| {
+            let [n, l, v] = [0, 3, 6].map(|i| DVec3::from_slice(&x[i..]));
+            let g = facing(n, l, v);
+            vec![g.mu_i, g.mu_o, g.cos_d, g.sin2_h, d_ggx(g.sin2_h, x[9])]
+        },
+        // Not the whole tolerance: `compare_facing` adds what a direction's rounding costs.
+        relative: |x| near_mirror(x[9]),
+        cases: facing_cases(),
+    }
+}
+
+fn compare_facing(gpu: &Gpu, physics: &str) -> Result<f64, String> {
+    let twins = facings();
+    let found = twins.found(gpu, physics);
+    let mut of_output: [Vec<Pair>; 5] = Default::default();
+    for (case, found) in twins.cases.iter().zip(found.chunks(5)) {
+        let case = widen(case);
+        let expected = (twins.twin)(&case);
+        let sin_h = expected[3].sqrt();
+        // What each output moves by when a product of unit vectors is rounded.
+        let rounding = [
+            UNIT_PRODUCT,
+            UNIT_PRODUCT,
+            UNIT_PRODUCT,
+            (2.0 * sin_h + UNIT_PRODUCT) * UNIT_PRODUCT,
+            0.0,
+        ];
+        for (k, pairs) in of_output.iter_mut().enumerate() {
+            let relative = if k == 4 {
+                (twins.relative)(&case)
+            } else {
+                RELATIVE
+            };
+            let mut pair = Pair::new(found[k], expected[k], relative);
+            pair.allowed += rounding[k];
+            pairs.push(pair);
+        }
+    }
+    let names = ["mu_i", "mu_o", "cos_d", "sin2_h", "d_ggx of sin2_h"];
+    let mut worst = 0.0f64;
+    for (name, pairs) in names.into_iter().zip(&of_output) {
+        let name = format!("facing: {name}");
+        worst = worst.max(judge(&name, pairs, |i| format!("{:?}", twins.cases[i]))?);
+    }
+    Ok(worst)
+}
+
+#[test]
+fn directions() {
+    compare_facing(&Gpu::new(), PAPER_BSDF).unwrap();
+}
+
+/// One lamp as the shader reads it, the point that it lights, and the sample.
+struct LampCase {
+    light: LightUniform,
+    /// The same, widened.
+    twin: Light,
+    p: Vec3,
+    sample: u32,
+}
+
+/// The shader's functions for lamps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lamps {
+    Distant,
+    Punctual,
+    Rectangle,
+}
+
+impl Lamps {
+    fn call(self) -> &'static str {
+        match self {
+            Self::Distant => "light_distant(x.light)",
+            Self::Punctual => "light_punctual(x.light, x.p)",
+            Self::Rectangle => "light_rectangle(x.light, x.p, x.sample)",
+        }
+    }
+}
+
+/// A lamp of any size that `lamps` can be asked about, anywhere that a manifest can put it and
+/// somewhat beyond.
+fn lamp(seeded: &Seeded, lamps: Lamps) -> Light {
+    // Of 1e-3…1e7 lm, over 4π sr, exposed for 1e-3…1e6 lx, with mm² for m².
+    let brightness = seeded.log(1e-3, 1e7) / 4.0 * 1e6 / seeded.log(1e-3, 1e6);
+    let amount = DVec3::new(1.0, seeded.unit(), seeded.log_or_zero(1e-5, 1.0)) * brightness;
+    let mut position = seeded.direction() * seeded.log_or_zero(1e-3, 1e5);
+    if seeded.bits().is_multiple_of(8) {
+        position.z = 0.0;
+    }
+    let axis = seeded.pick(&[
+        -position.normalize_or(DVec3::Z),
+        -DVec3::Z,
+        seeded.direction(),
+    ]);
+    let shape = match (lamps, seeded.bits() % 3) {
+        (Lamps::Rectangle, _) => {
+            let half_u = axis.any_orthonormal_vector();
+            Shape::Rectangle {
+                centre: position,
+                axis,
+                half_u: half_u * seeded.log_or_zero(0.05, 5e3),
+                half_v: axis.cross(half_u) * seeded.log_or_zero(0.05, 5e3),
+                grid: GRIDS.start() + (seeded.bits() % 4) as u32,
+            }
+        }
+        (Lamps::Distant, _) | (_, 0) => Shape::Distant { towards: -axis },
+        (_, 1) => Shape::Point { position },
+        _ => {
+            // Half angles of 0.1° to 89.9°, and beams without a soft edge.
+            let cos_falloff = (1.0 - seeded.log(1.5e-6, 0.998)).min(1.0);
+            let inside = seeded.log_or_zero(1e-7, 1.0);
+            Shape::Spot {
+                position,
+                axis,
+                cos_hotspot: cos_falloff + (1.0 - cos_falloff) * inside,
+                cos_falloff,
+            }
+        }
+    };
+    Light { shape, amount }
+}
+
+fn lamp_cases(lamps: Lamps) -> Vec<LampCase> {
+    let seeded = Seeded::new(3);
+    (0..200_000)
+        .map(|_| {
+            let light = lamp(&seeded, lamps);
+            let narrow = LightUniform::new(&light, false);
+            let p = seeded.direction() * seeded.log_or_zero(1.0, 3e3);
+            let wide = |v: Vec3| v.as_dvec3();
+            let shape = match light.shape {
+                Shape::Distant { .. } => Shape::Distant {
+                    towards: wide(narrow.place),
+                },
+                Shape::Point { .. } => Shape::Point {
+                    position: wide(narrow.place),
+                },
+                Shape::Spot { .. } => Shape::Spot {
+                    position: wide(narrow.place),
+                    axis: wide(narrow.axis),
+                    cos_hotspot: f64::from(narrow.cos_falloff) + 1.0 / f64::from(narrow.beam_scale),
+                    cos_falloff: f64::from(narrow.cos_falloff),
+                },
+                Shape::Rectangle { grid, .. } => Shape::Rectangle {
+                    centre: wide(narrow.place),
+                    axis: wide(narrow.axis),
+                    half_u: wide(narrow.half_edge_u),
+                    half_v: wide(narrow.half_edge_v),
+                    grid,
+                },
+            };
+            // Inside the lamp, at its very place, as well as anywhere.
+            let p = seeded.pick(&[p.as_vec3(), p.as_vec3(), narrow.place, Vec3::ZERO]);
+            LampCase {
+                light: narrow,
+                twin: Light {
+                    shape,
+                    amount: wide(narrow.amount),
+                },
+                p,
+                sample: (seeded.bits() % u64::from(narrow.grid * narrow.grid).max(1)) as u32,
+            }
+        })
+        .collect()
+}
+
+/// How far the illuminance and direction of a case may be from their twins.
+fn lamp_rounding(case: &LampCase, twin: &Incidence) -> (f64, f64) {
+    let wide = |v: Vec3| v.as_dvec3();
+    // Unshaped light: what the beam, or the lamp's own cosine, is a share of.
+    let (towards, places, share, steepness) = match case.twin.shape {
+        Shape::Distant { towards } => (towards, DVec3::ZERO, 1.0, 0.0),
+        Shape::Point { position } => (position - wide(case.p), DVec3::ZERO, 1.0, 0.0),
+        Shape::Spot { position, .. } => {
+            let steepness = f64::from(case.light.beam_scale);
+            (position - wide(case.p), DVec3::ZERO, 1.0, steepness)
+        }
+        Shape::Rectangle {
+            centre,
+            half_u,
+            half_v,
+            grid,
+            ..
+        } => {
+            let [u, weight_u] = gauss_legendre(grid, case.sample % grid);
+            let [v, weight_v] = gauss_legendre(grid, case.sample / grid);
+            let towards = centre + half_u * u + half_v * v - wide(case.p);
+            let share = weight_u * weight_v;
+            let places = centre.abs() + half_u.abs() + half_v.abs() + wide(case.p).abs();
+            (towards, places, share, 1.0)
+        }
+    };
+    let distance2 = towards.length_squared().max(1e-12);
+    // Only a rectangle's place is a sum of more than two: its rounding turns the direction.
+    let turned = UNIT_PRODUCT * places.length() / distance2.sqrt();
+    let unshaped = case.twin.amount.max_element() * share
+        / distance2.max(f64::from(case.light.distance_squared_min));
+    let of_light =
+        unshaped * (UNIT_PRODUCT + turned) * steepness + twin.e.max_element() * 2.0 * turned;
+    (RELATIVE + turned, of_light)
+}
+
+fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, String> {
+    let cases = lamp_cases(lamps);
+    let given: Vec<f32> = cases
+        .iter()
+        .flat_map(|case| {
+            let mut words = words(&case.light);
+            words.extend(case.p.to_array());
+            words.push(f32::from_bits(case.sample));
+            words
+        })
+        .collect();
+    let body = format!(
+        "let x = given[index]; let incidence = {};
+        found[to] = incidence.l.x; found[to + 1u] = incidence.l.y; found[to + 2u] = incidence.l.z;
+        found[to + 3u] = incidence.e.x; found[to + 4u] = incidence.e.y;
+        found[to + 5u] = incidence.e.z;",
+        lamps.call()
+    );
+    let text = format!(
+        "{physics}\nstruct Case {{ light: Light, p: vec3<f32>, sample: u32 }}\n{}",
+        entry("Case", cases.len(), 6, &body)
+    );
+    let found = gpu.run(&text, &given, cases.len(), 6);
+    let (mut ways, mut lights) = (Vec::new(), Vec::new());
+    for (case, found) in cases.iter().zip(found.chunks(6)) {
+        let twin = case.twin.at(case.p.as_dvec3())[case.sample as usize];
+        let (of_way, of_light) = lamp_rounding(case, &twin);
+        let l = Vec3::from_slice(found).as_dvec3();
+        // A length is not negative; the direction is judged by how far it is off.
+        ways.push(Pair {
+            gpu: (l - twin.l).length() as f32,
+            cpu: 0.0,
+            allowed: of_way,
+        });
+        for k in 0..3 {
+            let mut pair = Pair::new(found[3 + k], twin.e[k], RELATIVE);
+            pair.allowed += of_light;
+            lights.push(pair);
+        }
+    }
+    let case = |i: usize| {
+        let LampCase {
+            light, p, sample, ..
+        } = &cases[i];
+        format!("{light:?} at {p}, sample {sample}")
+    };
+    let of_way = judge(&format!("{lamps:?} lamps: direction"), &ways, case)?;
+    let of_light = judge(&format!("{lamps:?} lamps: illuminance"), &lights, |i| {
+        case(i / 3)
+    })?;
+    Ok(of_way.max(of_light))
+}
+
+#[test]
+fn lamps() {
+    let gpu = Gpu::new();
+    for lamps in [Lamps::Distant, Lamps::Punctual, Lamps::Rectangle] {
+        compare_lamps(&gpu, PAPER_BSDF, lamps).unwrap();
+    }
+}
+
+#[test]
+fn light_may_go_either_way() {
+    let gpu = Gpu::new();
+    let [_, draft, gallery] = brdfs();
+    // The same surface with light and eye exchanged.
+    let exchange = "let f = {f};
+        let back = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h); let f_back = {b};
+        found[to] = f.x; found[to + 1u] = f_back.x;";
+    for (name, there, back) in [
+        ("draft", "brdf_draft(s, g)", "brdf_draft(s, back)"),
+        (
+            "gallery",
+            "brdf_gallery(s, g, at_i, at_o, mean)",
+            "brdf_gallery(s, back, at_o, at_i, mean)",
+        ),
+    ] {
+        let cases = if name == "draft" {
+            &draft.cases
+        } else {
+            &gallery.cases
+        };
+        let exchange = exchange.replace("{f}", there).replace("{b}", back);
+        let arity = cases[0].len();
+        let body = format!("let at = index * {arity}u; {BRDF_INPUTS} {exchange}");
+        let text = format!("{PAPER_BSDF}\n{}", entry("f32", cases.len(), 2, &body));
+        let found = gpu.run(&text, &cases.concat(), cases.len(), 2);
+        let pairs: Vec<Pair> = found
+            .chunks(2)
+            .map(|both| Pair::new(both[0], f64::from(both[1]), RECIPROCITY))
+            .collect();
+        judge(&format!("reciprocity of {name}"), &pairs, |i| {
+            format!("{:?}", cases[i])
+        })
+        .unwrap();
+    }
+}
+
+/// The numbers of a uniform as the shader finds them in memory.
+fn words<T: ShaderType + WriteInto>(uniform: &T) -> Vec<f32> {
+    let mut buffer = StorageBuffer::new(Vec::new());
+    buffer.write(uniform).expect("a Vec grows");
+    buffer
+        .into_inner()
+        .chunks_exact(4)
+        .map(|word| f32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+        .collect()
+}
+
+/// What the terms of a polynomial add up to before they cancel, times the rounding of each.
+fn polynomial_rounding(coefficients: &[AlphaPolynomial], mu: f64, alpha: f64) -> f64 {
+    let (x, s) = (mu.sqrt(), alpha.clamp(ALPHA_FIT_MIN, 1.0).sqrt());
+    let powers = |of: f64, k: usize| of.powi(k as i32);
+    let sum: f64 = coefficients
+        .iter()
+        .enumerate()
+        .map(|(i, over_s)| {
+            let terms = over_s.iter().enumerate();
+            powers(x, i) * terms.map(|(j, c)| c.abs() * powers(s, j)).sum::<f64>()
+        })
+        .sum();
+    sum * UNIT_PRODUCT
+}
+
+#[test]
+fn interfaces() {
+    let gpu = Gpu::new();
+    let mut tables: Vec<(String, bool, InterfaceTable)> = Vec::new();
+    for (index, specular) in [(1.0, 1.0), (1.5, 1.0), (1.5, 0.3), (3.0, 1.0)] {
+        let name = format!("interface of index {index}, specular {specular}");
+        tables.push((name.clone(), true, InterfaceTable::new(index, specular)));
+        for alpha in [0.0, 0.01, 0.5] {
+            let table = InterfaceTable::at_roughness(alpha, index, specular);
+            tables.push((format!("{name}, α {alpha}"), false, table));
+        }
+    }
+    let mut cosines = cosines();
+    cosines.extend([0.0, 0.25, 0.9999]);
+    let cases = grid(&[cosines, alphas()]);
+    for (name, fitted, table) in &tables {
+        let uniform = words(&InterfaceUniform::new(table));
+        // Table first, then the cases, as one array of numbers.
+        let table_words = uniform.len();
+        let vector = |at: usize| {
+            let numbers: Vec<String> = (at..at + 4).map(|i| format!("given[{i}u]")).collect();
+            format!("vec4({})", numbers.join(", "))
+        };
+        let vectors: Vec<String> = (0..table_words).step_by(4).map(vector).collect();
+        let (t, rest) = vectors.split_at(MU_TERMS);
+        let (lost, means) = rest.split_at(LOST_TERMS);
+        let powers = if *fitted {
+            "fit_powers(alpha)"
+        } else {
+            "vec4(1.0, 0.0, 0.0, 0.0)"
+        };
+        let body = format!(
+            "let table = InterfaceTable(array({}), array({}), {});
+            let mu = given[{table_words}u + 2u * index];
+            let alpha = given[{table_words}u + 2u * index + 1u];
+            let p = {powers};
+            let at_mu = interface_at(interface_row(table, p), mu);
+            let mean = interface_mean_at(table, p);
+            found[to] = at_mu.t;
+            found[to + 1u] = at_mu.lost;
+            found[to + 2u] = mean.compensation;
+            found[to + 3u] = mean.t_mean;
+            found[to + 4u] = mean.capture;",
+            t.join(", "),
+            lost.join(", "),
+            means.join(", ")
+        );
+        let text = format!("{PAPER_BSDF}\n{}", entry("f32", cases.len(), 5, &body));
+        let given = [uniform, cases.concat()].concat();
+        let found = gpu.run(&text, &given, cases.len(), 5);
+        let pairs: Vec<Pair> = cases
+            .iter()
+            .zip(found.chunks(5))
+            .flat_map(|(case, found)| {
+                let (mu, alpha) = (f64::from(case[0]), f64::from(case[1]));
+                let (at, mean) = (table.at(mu, alpha), table.mean_at(alpha));
+                let expected = [at.t, at.lost, mean.compensation, mean.t_mean, mean.capture];
+                let rounding = [
+                    polynomial_rounding(&table.t, mu, alpha),
+                    polynomial_rounding(&table.lost, mu, alpha),
+                    polynomial_rounding(&[table.compensation], mu, alpha),
+                    polynomial_rounding(&[table.t_mean], mu, alpha),
+                    polynomial_rounding(&[table.capture], mu, alpha),
+                ];
+                std::array::from_fn::<_, 5, _>(|k| {
+                    let mut pair = Pair::new(found[k], expected[k], RELATIVE);
+                    pair.allowed += rounding[k];
+                    pair
+                })
+            })
+            .collect();
+        judge(name, &pairs, |i| {
+            format!("{:?}, output {}", cases[i / 5], i % 5)
+        })
+        .unwrap();
+    }
+}
+
+/// The physics with one line of it broken.
+fn broken(sound: &str, wrong: &str) -> String {
+    assert!(PAPER_BSDF.contains(sound), "{sound} is not in the shader");
+    PAPER_BSDF.replace(sound, wrong)
+}
+
+#[test]
+fn a_broken_shader_is_found() {
+    let gpu = Gpu::new();
+    let cosine = broken(
+        "min(dot(across, across), 1.0)",
+        "max(1.0 - dot(n, h) * dot(n, h), 0.0)",
+    );
+    let power = broken("m_2 * m_2 * m;", "m_2 * m_2;");
+    let floor = broken(
+        "max(sqrt(distance_squared), LENGTH_MIN)",
+        "sqrt(distance_squared)",
+    );
+    let facets = broken("/ (d * d)", "/ d");
+    let coupling = broken(
+        "at_i.t * at_o.t * mean.capture",
+        "at_i.t * at_i.t * mean.capture",
+    );
+    let [_, draft, gallery] = brdfs();
+    for outcome in [
+        compare_facing(&gpu, &cosine),
+        schlick().compare(&gpu, &power),
+        draft.compare(&gpu, &power),
+        compare_lamps(&gpu, &floor, Lamps::Punctual),
+        compare_lamps(&gpu, &floor, Lamps::Rectangle),
+        distribution().compare(&gpu, &facets),
+        gallery.compare(&gpu, &coupling),
+    ] {
+        assert!(outcome.is_err(), "a broken shader passed: {outcome:?}");
+    }
+}

@@ -1,0 +1,515 @@
+//! The shaders as texts: they parse and validate alone and composed, and every twin of theirs in
+//! Rust has the same names, order and places in memory.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use bevy::render::render_resource::{
+    ShaderType,
+    encase::{StorageBuffer, internal::WriteInto},
+};
+use glam::{Mat4, Vec2, Vec3, Vec4};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use recto::{
+    manifest::{MAX_LAMPS, MAX_OVERLAYS},
+    optics::{
+        microfacet::{ALPHA_MIN, MU_MIN},
+        table::{ALPHA_FIT_MIN, LOST_TERMS, MU_TERMS},
+    },
+    sheet::{
+        PAPER_BSDF, PAPER_MATERIAL,
+        uniform::{InterfaceUniform, LightUniform, MapPlace, PaperUniform},
+    },
+};
+
+#[path = "support/glue.rs"]
+mod glue;
+
+use glue::{Composer, DEFINITIONS};
+
+fn validate(module: &naga::Module) -> Result<(), String> {
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(module)
+        .map(|_| ())
+        .map_err(|error| format!("{error:?}"))
+}
+
+#[test]
+fn the_physics_parses_and_validates_by_itself() {
+    let module = naga::front::wgsl::parse_str(PAPER_BSDF).expect("plain WGSL");
+    validate(&module).unwrap();
+    assert_eq!(module.global_variables.len(), 0, "it binds nothing");
+    assert_eq!(
+        module.entry_points.len(),
+        0,
+        "entry points belong to the glue"
+    );
+    assert!(
+        !PAPER_BSDF
+            .lines()
+            .any(|line| line.trim_start().starts_with('#')),
+        "directives belong to the glue"
+    );
+}
+
+/// The text without `//` comments and directives.
+fn plain(text: &str) -> String {
+    text.lines()
+        .map(|line| line.split_once("//").map_or(line, |(code, _)| code))
+        .filter(|line| !line.trim_start().starts_with('#'))
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// Splits at commas outside of brackets.
+fn split_list(text: &str) -> Vec<&str> {
+    let mut depth = 0;
+    let parts = text.split(|c: char| {
+        match c {
+            '(' | '<' | '[' => depth += 1,
+            ')' | '>' | ']' => depth -= 1,
+            _ => {}
+        }
+        c == ',' && depth == 0
+    });
+    parts
+        .map(str::trim)
+        .filter(|part| !part.is_empty())
+        .collect()
+}
+
+/// The name of `@attribute(…) pub name: type`.
+fn declared(declaration: &str) -> &str {
+    let name = declaration
+        .split_once(':')
+        .map_or(declaration, |(name, _)| name);
+    name.trim()
+        .rsplit([' ', '\n'])
+        .next()
+        .unwrap_or_default()
+        .trim()
+}
+
+/// Name and declarations behind every `keyword name open … close` of a text.
+fn blocks<'t>(
+    text: &'t str,
+    keyword: &str,
+    open: char,
+    close: char,
+) -> Vec<(&'t str, Vec<&'t str>)> {
+    text.split(keyword)
+        .skip(1)
+        .filter_map(|rest| {
+            let (name, rest) = rest.split_once(open)?;
+            let (inside, _) = rest.split_once(close)?;
+            Some((name.trim(), split_list(inside)))
+        })
+        .collect()
+}
+
+fn members_that_end_in_a_digit(text: &str) -> Vec<String> {
+    blocks(&plain(text), "struct ", '{', '}')
+        .into_iter()
+        .flat_map(|(name, members)| {
+            members
+                .into_iter()
+                .map(declared)
+                .filter(|member| member.ends_with(|c: char| c.is_ascii_digit()))
+                .map(move |member| format!("{name}.{member}"))
+        })
+        .collect()
+}
+
+#[test]
+fn no_struct_member_ends_in_a_digit() {
+    // Bevy's composer breaks on one with a type error, and the app then shows no sheet.
+    for text in [PAPER_BSDF, PAPER_MATERIAL] {
+        assert_eq!(members_that_end_in_a_digit(text), [""; 0]);
+    }
+    let bad =
+        "struct S { // f1: f32\n @location(0) f0: f32,\n#ifdef X\n place: vec3<f32>, a_2: S }";
+    assert_eq!(members_that_end_in_a_digit(bad), ["S.f0", "S.a_2"]);
+}
+
+/// Each part of the physics with the source that its heading names.
+fn twin_sections() -> Vec<(String, String)> {
+    const HEADING: &str = "// Twins of src/optics/";
+    PAPER_BSDF
+        .split(HEADING)
+        .skip(1)
+        .map(|section| {
+            let (file, rest) = section.split_once(".rs").expect("a file");
+            let path = format!("{}/src/optics/{file}.rs", env!("CARGO_MANIFEST_DIR"));
+            let source = std::fs::read_to_string(&path).unwrap_or_else(|error| {
+                panic!("{path}: {error}");
+            });
+            let source = source
+                .split_once("#[cfg(test)]")
+                .map_or(source.as_str(), |(code, _)| code);
+            (plain(&format!("//{rest}")), plain(source))
+        })
+        .collect()
+}
+
+/// Names of parameters or fields, in their order, by name of the function or struct.
+fn signatures(text: &str, keyword: &str, open: char, close: char) -> BTreeMap<String, Vec<String>> {
+    blocks(text, keyword, open, close)
+        .into_iter()
+        .map(|(name, declarations)| {
+            let names = declarations
+                .iter()
+                .map(|each| declared(each).to_owned())
+                .collect();
+            (name.to_owned(), names)
+        })
+        .collect()
+}
+
+/// Functions of the twin sources that only the CPU calls.
+const CPU_ONLY: [&str; 3] = ["directional_albedo", "normal_reflectance", "polygon_form"];
+/// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
+/// pixel: these stand for methods, `Light::at`, `InterfaceTable::at` and `mean_at`.
+const GPU_ONLY: [&str; 7] = [
+    "fit_powers",
+    "interface_at",
+    "interface_mean_at",
+    "interface_row",
+    "light_distant",
+    "light_punctual",
+    "light_rectangle",
+];
+/// Layouts of the shader's own. Where a uniform fills one, its offsets are compared.
+const GPU_LAYOUTS: [&str; 3] = ["InterfaceRow", "InterfaceTable", "Light"];
+
+#[test]
+fn twins_have_the_same_names_and_order() {
+    let mut compared = 0;
+    for (wgsl, rust) in twin_sections() {
+        let of_shader = signatures(&wgsl, "fn ", '(', ')');
+        // Free functions start at the margin; methods have no twins.
+        let of_source = signatures(&rust, "\npub fn ", '(', ')');
+        let without_twin = |names: &[&str], name: &str| names.contains(&name);
+        for (name, parameters) in &of_shader {
+            if !without_twin(&GPU_ONLY, name) {
+                assert_eq!(Some(parameters), of_source.get(name), "{name}");
+                compared += 1;
+            }
+        }
+        for name in of_source.keys() {
+            let twin = of_shader.contains_key(name) || without_twin(&CPU_ONLY, name);
+            assert!(twin, "{name} has no twin in the shader");
+        }
+        let structs = signatures(&rust, "\npub struct ", '{', '}');
+        for (name, members) in signatures(&wgsl, "struct ", '{', '}') {
+            if !without_twin(&GPU_LAYOUTS, &name) {
+                assert_eq!(Some(&members), structs.get(&name), "{name}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(
+        compared >= 12,
+        "only {compared} twins found: the reader is broken"
+    );
+}
+
+#[test]
+fn constants_of_the_shaders_are_those_of_the_sources() {
+    let constant = |text: &str, name: &str| -> f64 {
+        let (_, rest) = text.split_once(&format!("const {name}:")).expect(name);
+        let (value, _) = rest
+            .split_once('=')
+            .and_then(|(_, value)| value.split_once(';'))
+            .expect(name);
+        value.trim().parse().expect(name)
+    };
+    assert_eq!(constant(PAPER_BSDF, "PI") as f32, std::f32::consts::PI);
+    let inverse = constant(PAPER_BSDF, "INV_PI") as f32;
+    assert_eq!(inverse, std::f32::consts::FRAC_1_PI);
+    assert_eq!(constant(PAPER_BSDF, "ALPHA_MIN"), ALPHA_MIN);
+    assert_eq!(constant(PAPER_BSDF, "MU_MIN"), MU_MIN);
+    assert_eq!(constant(PAPER_BSDF, "ALPHA_FIT_MIN"), ALPHA_FIT_MIN);
+}
+
+/// Bytes of a value as the uniform buffer holds them.
+fn bytes<T: ShaderType + WriteInto>(value: &T) -> Vec<u8> {
+    let mut buffer = StorageBuffer::new(Vec::new());
+    buffer.write(value).expect("a Vec grows");
+    buffer.into_inner()
+}
+
+/// Name and bytes of each field.
+type Fields = Vec<(&'static str, Vec<u8>)>;
+/// A uniform's bytes, and those of its fields.
+type Filled = (Vec<u8>, Fields);
+
+/// Fills every field, by name, with a value of its own.
+macro_rules! filled {
+    ($type:ident { $($field:ident: $value:expr,)* }) => {{
+        let filled = $type { $($field: $value,)* };
+        let fields = vec![$((stringify!($field), bytes(&filled.$field)),)*];
+        (filled, fields)
+    }};
+}
+
+/// Numbers of which no two are alike.
+struct Sentinel(u32);
+
+impl Sentinel {
+    fn u32(&mut self) -> u32 {
+        self.0 += 1;
+        self.0
+    }
+
+    fn f32(&mut self) -> f32 {
+        self.u32() as f32
+    }
+
+    fn vec2(&mut self) -> Vec2 {
+        Vec2::from_array(std::array::from_fn(|_| self.f32()))
+    }
+
+    fn vec3(&mut self) -> Vec3 {
+        Vec3::from_array(std::array::from_fn(|_| self.f32()))
+    }
+
+    fn vec4(&mut self) -> Vec4 {
+        Vec4::from_array(std::array::from_fn(|_| self.f32()))
+    }
+
+    fn light(&mut self) -> (LightUniform, Fields) {
+        filled!(LightUniform {
+            place: self.vec3(),
+            near: self.f32(),
+            amount: self.vec3(),
+            grid: self.u32(),
+            axis: self.vec3(),
+            beam_scale: self.f32(),
+            half_edge_u: self.vec3(),
+            cos_falloff: self.f32(),
+            half_edge_v: self.vec3(),
+            distance_squared_min: self.f32(),
+        })
+    }
+
+    fn map_place(&mut self) -> (MapPlace, Fields) {
+        filled!(MapPlace {
+            row_u: self.vec3(),
+            opacity: self.f32(),
+            row_v: self.vec3(),
+            lit: self.f32(),
+        })
+    }
+
+    fn interface(&mut self) -> (InterfaceUniform, Fields) {
+        filled!(InterfaceUniform {
+            t: std::array::from_fn::<_, MU_TERMS, _>(|_| self.vec4()),
+            lost: std::array::from_fn::<_, LOST_TERMS, _>(|_| self.vec4()),
+            compensation: self.vec4(),
+            t_mean: self.vec4(),
+            capture: self.vec4(),
+        })
+    }
+
+    fn paper(&mut self) -> (PaperUniform, Fields) {
+        filled!(PaperUniform {
+            clip_from_local: Mat4::from_cols(self.vec4(), self.vec4(), self.vec4(), self.vec4()),
+            eye: self.vec4(),
+            ambient: self.vec3(),
+            lamp_count: self.u32(),
+            table: self.vec3(),
+            alpha: self.f32(),
+            bare: self.vec3(),
+            specular: self.f32(),
+            size: self.vec2(),
+            eta: self.f32(),
+            f_normal: self.f32(),
+            normal_axes: self.vec4(),
+            normal_offset: self.vec2(),
+            sign_gain: self.f32(),
+            overlay_count: self.u32(),
+            albedo_place: self.map_place().0,
+            normal_place: self.map_place().0,
+            roughness_place: self.map_place().0,
+            outline_place: self.map_place().0,
+            interface_table: self.interface().0,
+            lights: std::array::from_fn::<_, MAX_LAMPS, _>(|_| self.light().0),
+            overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),
+        })
+    }
+}
+
+/// Where the shader's struct `name` does not read what the uniform writes.
+fn misread(module: &naga::Module, name: &str, (whole, fields): &Filled) -> Vec<String> {
+    // The composer marks the names of imported types.
+    let imported = format!("{name}X_naga_oil");
+    let is_it = |each: &str| each == name || each.starts_with(&imported);
+    let (members, span) = module
+        .types
+        .iter()
+        .find_map(|(_, of)| match (&of.name, &of.inner) {
+            (Some(each), naga::TypeInner::Struct { members, span }) if is_it(each) => {
+                Some((members, *span))
+            }
+            _ => None,
+        })
+        .unwrap_or_else(|| panic!("no struct {name}"));
+    let mut faults = Vec::new();
+    if span as usize != whole.len() {
+        faults.push(format!("{name}: {span} bytes, not {}", whole.len()));
+    }
+    let mut fields: BTreeMap<_, _> = fields.iter().map(|(name, own)| (*name, own)).collect();
+    for member in members {
+        let of_member = member.name.as_deref().unwrap_or_default();
+        let offset = member.offset as usize;
+        match fields.remove(of_member) {
+            None => faults.push(format!("{name}.{of_member} is never written")),
+            Some(own) if whole.get(offset..offset + own.len()) == Some(own) => {}
+            Some(_) => faults.push(format!("{name}.{of_member} reads another field")),
+        }
+    }
+    faults.extend(
+        fields
+            .keys()
+            .map(|field| format!("{name}.{field} is never read")),
+    );
+    faults
+}
+
+fn parse(text: &str) -> naga::Module {
+    naga::front::wgsl::parse_str(text).expect("plain WGSL")
+}
+
+#[test]
+fn uniforms_lie_in_memory_as_the_shader_reads_them() {
+    fn whole<T: ShaderType + WriteInto>((value, fields): (T, Fields)) -> Filled {
+        (bytes(&value), fields)
+    }
+    let mut sentinel = Sentinel(0);
+    let light = whole(sentinel.light());
+    let table = whole(sentinel.interface());
+    let place = whole(sentinel.map_place());
+    let paper = whole(sentinel.paper());
+    let physics = parse(PAPER_BSDF);
+    let glue = Composer::new("").compose(&["TIER_GALLERY"]).unwrap();
+    for faults in [
+        misread(&physics, "Light", &light),
+        misread(&physics, "InterfaceTable", &table),
+        misread(&glue, "Light", &light),
+        misread(&glue, "InterfaceTable", &table),
+        misread(&glue, "MapPlace", &place),
+        misread(&glue, "Paper", &paper),
+    ] {
+        assert_eq!(faults, [""; 0]);
+    }
+}
+
+#[test]
+fn members_out_of_place_are_found() {
+    let (place, fields) = Sentinel(0).map_place();
+    let place = (bytes(&place), fields);
+    let swapped = "struct MapPlace { row_u: vec3<f32>, lit: f32, row_v: vec3<f32>, opacity: f32 }";
+    assert_eq!(
+        misread(&parse(swapped), "MapPlace", &place),
+        [
+            "MapPlace.lit reads another field",
+            "MapPlace.opacity reads another field"
+        ]
+    );
+    let shorter = "struct MapPlace { row_u: vec3<f32>, opacity: f32, row_v: vec2<f32> }";
+    let faults = misread(&parse(shorter), "MapPlace", &place);
+    assert!(
+        faults.contains(&"MapPlace.lit is never read".to_owned()),
+        "{faults:?}"
+    );
+}
+
+const TIERS: [&str; 3] = ["TIER_LAMBERT", "TIER_DRAFT", "TIER_GALLERY"];
+
+#[test]
+fn the_material_defines_what_the_glue_asks_for() {
+    let material = include_str!("../src/sheet/material.rs");
+    let (_, rest) = material.split_once("let defs").expect("the definitions");
+    let (list, _) = rest.split_once(".into_iter()").expect("their end");
+    let defined: BTreeSet<&str> = list.split('"').skip(1).step_by(2).collect();
+    let asked: BTreeSet<&str> = DEFINITIONS.iter().copied().collect();
+    assert_eq!(defined, asked);
+    assert!(TIERS.iter().all(|tier| asked.contains(tier)));
+}
+
+/// Whether a side can need these terms: see `side_needs` in src/needs.rs.
+fn can_occur(defined: &[&str]) -> bool {
+    let has = |name| defined.contains(&name);
+    let tiers = TIERS.iter().filter(|tier| has(tier)).count();
+    // A side without maps is bare paper, nothing of the Lambert tier is rough, and the draft
+    // tier takes a rectangle for a point.
+    tiers == 1
+        && (has("ALBEDO_MAP") || !(has("NORMAL_MAP") || has("ROUGHNESS_MAP")))
+        && !(has("TIER_LAMBERT") && has("ROUGHNESS_MAP"))
+        && !(has("AREA_LAMPS") && (has("DISTANT_LAMPS") || has("TIER_DRAFT")))
+}
+
+/// Of the sets of bits, as few as show every four bits in each of their sixteen states that
+/// occurs at all.
+fn every_four(sets: impl Iterator<Item = u32>, bits: u32) -> Vec<u32> {
+    let mut fours = Vec::new();
+    for a in 0..bits {
+        for b in a + 1..bits {
+            for c in b + 1..bits {
+                fours.extend((c + 1..bits).map(|d| [a, b, c, d]));
+            }
+        }
+    }
+    let mut seen = vec![0u16; fours.len()];
+    sets.filter(|set| {
+        let mut new = false;
+        for (four, seen) in fours.iter().zip(&mut seen) {
+            let state = four
+                .iter()
+                .fold(0, |state, bit| state << 1 | (set >> bit & 1));
+            new |= *seen & 1 << state == 0;
+            *seen |= 1 << state;
+        }
+        new
+    })
+    .collect()
+}
+
+/// The terms are too many for every need. The glue nests two definitions and reads what two
+/// others declare, so that a fault shows in some four of them.
+#[test]
+fn the_glue_is_valid_for_every_four_terms() {
+    let names = &*DEFINITIONS;
+    let bits = names.len() as u32;
+    let defined = |set: u32| -> Vec<&str> {
+        let on = (0..names.len()).filter(|i| set >> i & 1 == 1);
+        on.map(|i| names[i]).collect()
+    };
+    // An odd step visits every set once, and neighbours differ in many bits.
+    let all = (0..1u32 << bits).map(|i| i.wrapping_mul(0x9e37_79b1) & ((1 << bits) - 1));
+    let needs = every_four(all.filter(|&set| can_occur(&defined(set))), bits);
+    assert!(needs.len() > 100);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for share in needs.chunks(needs.len().div_ceil(threads)) {
+            scope.spawn(move || {
+                let mut composer = Composer::new("");
+                for &set in share {
+                    let defined = defined(set);
+                    let module = composer.compose(&defined).unwrap();
+                    validate(&module).unwrap_or_else(|error| panic!("{defined:?}: {error}"));
+                    assert_eq!(module.entry_points.len(), 2, "{defined:?}");
+                }
+            });
+        }
+    });
+    eprintln!("{} shaders composed and validated", needs.len());
+}
+
+#[test]
+fn a_glue_that_is_not_valid_is_found() {
+    let mut composer = Composer::new("fn wrong() -> f32 { return 1u; }");
+    let outcome = composer
+        .compose(&["TIER_LAMBERT"])
+        .and_then(|module| validate(&module));
+    assert!(outcome.is_err());
+}
