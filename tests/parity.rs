@@ -545,7 +545,7 @@ fn lamp(seeded: &Seeded, lamps: Lamps) -> Light {
                 axis,
                 half_u: half_u * seeded.log_or_zero(0.05, 5e3),
                 half_v: axis.cross(half_u) * seeded.log_or_zero(0.05, 5e3),
-                grid: GRIDS.start() + (seeded.bits() % 4) as u32,
+                grid: GRIDS.start() + (seeded.bits() % 7) as u32,
             }
         }
         (Lamps::Distant, _) | (_, 0) => Shape::Distant { towards: -axis },

@@ -8,7 +8,7 @@ use super::exhibit::{Exhibit, LampKind, Scene};
 use crate::{
     colour,
     optics::{
-        lamp::{Light, Shape, grid_for},
+        lamp::{Light, Shape},
         lamp_units::area_axes,
     },
     units::{Degrees, Kelvin},
@@ -148,5 +148,15 @@ fn rectangle(centre: DVec3, aim: DVec3, size_mm: DVec2) -> Shape {
         half_u,
         half_v,
         grid: grid_for(apparent),
+    }
+}
+
+/// How finely to sample a rectangle whose longer edge is `apparent` times its distance.
+pub fn grid_for(apparent: f64) -> u32 {
+    match apparent {
+        a if a < 0.3 => 2,
+        a if a < 1.0 => 3,
+        a if a < 2.0 => 5,
+        _ => 8,
     }
 }

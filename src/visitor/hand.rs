@@ -31,7 +31,7 @@ const STEEP_DEG: f64 = 75.0;
 /// Narrowest picture, in mm.
 const NARROWEST_MM: f64 = 2.0;
 /// A picture narrower than the whole sheet by this factor is zoomed in.
-const ZOOMED: f64 = 0.97;
+const ZOOMED: f64 = 0.85;
 /// A zoom this near its target, relatively, has arrived.
 const ARRIVED: f64 = 1e-3;
 /// A turned sheet this near to rest, in degrees and degrees per second, rests.

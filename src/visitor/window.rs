@@ -57,6 +57,8 @@ const SETTLING_FRAMES: u32 = 4;
 const CHANGE_FRAMES: u32 = 1;
 /// Frames that take longer are too slow to follow a hand.
 const SLOW: Duration = Duration::from_millis(90);
+/// A hand that rests longer has come to rest.
+const PAUSE: Duration = Duration::from_millis(400);
 /// Between two looks at whether the first maps have arrived.
 const LOADING_PAUSE: Duration = Duration::from_millis(30);
 /// Writes the number of frames drawn into this file, for tests.
@@ -267,7 +269,7 @@ fn steer(
     mut intents: MessageReader<Intent>,
     mut hand: ResMut<Hand>,
     time: Res<Time<Real>>,
-    (arranged, pace): (Res<Arranged>, Res<Pace>),
+    (arranged, mut pace): (Res<Arranged>, ResMut<Pace>),
     mut shown: ResMut<Shown>,
 ) {
     hand.advance(time.delta_secs_f64(), arranged.is_settled());
@@ -276,8 +278,11 @@ fn steer(
         hand.apply(*intent);
         moving |= intent.is_motion();
     }
-    if moving && pace.slow {
-        hand.hurry(true);
+    if moving {
+        pace.moved = time.elapsed();
+        if pace.slow {
+            hand.hurry(true);
+        }
     }
     let wanted = hand.shown();
     if differs(&shown, &wanted) {
@@ -361,6 +366,8 @@ struct Pace {
     left: u32,
     /// Frames at the tier that was asked for come too slowly to follow a hand.
     slow: bool,
+    /// When something last moved, since the start.
+    moved: Duration,
     /// Something has been shown.
     begun: bool,
 }
@@ -386,8 +393,10 @@ fn rest(
     } else if shown.is_changed() || texts.is_changed() || hand.is_moving() {
         pace.left = pace.left.max(CHANGE_FRAMES);
     } else if pace.left == 0 && hand.is_hurried() {
-        // At rest, the picture refines.
-        hand.hurry(false);
+        // At rest, the picture refines; a hand that only pauses does not wait for that.
+        if time.elapsed().saturating_sub(pace.moved) > PAUSE {
+            hand.hurry(false);
+        }
         pace.left = CHANGE_FRAMES;
     }
     let loading = !settled && library.is_busy();
