@@ -9,8 +9,9 @@ use glam::{DVec2, DVec3};
 
 use crate::manifest::{exhibit::FlipAxis, frames::other_side};
 
-/// Quads along the longer edge of a curled sheet.
-const QUADS: usize = 256;
+/// Quads along the longer edge of a curled sheet: a curl is gentle, and small triangles cost a
+/// software driver more than the pixels in them.
+const QUADS: usize = 96;
 /// How far a flat sheet's mesh reaches beyond its edge, as a share of its size: room for the
 /// smooth step that the shader draws there.
 const MARGIN: f64 = 0.01;

@@ -137,7 +137,7 @@ mod tests {
         let up = raking().moved(DVec2::new(0.0, 0.5));
         assert!(up.azimuth_deg > 90.0 && up.azimuth_deg < 180.0);
         let across = raking().moved(DVec2::new(2.0, 0.0));
-        assert_eq!(across.azimuth_deg, 0.0);
+        assert!(across.azimuth_deg.to_radians().cos() > 0.999);
         let out = raking().moved(DVec2::new(-5.0, 0.0));
         assert!((out.elevation_deg - LOWEST_DEG).abs() < 1e-9);
     }
