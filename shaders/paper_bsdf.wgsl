@@ -210,52 +210,9 @@ fn light_punctual(light: Light, p: vec3<f32>) -> Incidence {
     return Incidence(l, light.amount * (beam / max(distance_squared, light.distance_squared_min)));
 }
 
-// Nodes and weights of the rules of 2 to 8 points.
-const GAUSS_LEGENDRE = array<vec2<f32>, 35>(
-    vec2(-0.5773502691896257, 0.5),
-    vec2(0.5773502691896257, 0.5),
-    vec2(-0.7745966692414834, 0.27777777777777785),
-    vec2(0.0, 0.4444444444444444),
-    vec2(0.7745966692414834, 0.27777777777777785),
-    vec2(-0.8611363115940526, 0.17392742256872679),
-    vec2(-0.33998104358485626, 0.3260725774312732),
-    vec2(0.33998104358485626, 0.3260725774312732),
-    vec2(0.8611363115940526, 0.17392742256872679),
-    vec2(-0.906179845938664, 0.11846344252809464),
-    vec2(-0.5384693101056831, 0.23931433524968315),
-    vec2(0.0, 0.28444444444444433),
-    vec2(0.5384693101056831, 0.23931433524968315),
-    vec2(0.906179845938664, 0.11846344252809464),
-    vec2(-0.9324695142031519, 0.08566224618958514),
-    vec2(-0.6612093864662645, 0.18038078652406936),
-    vec2(-0.2386191860831969, 0.23395696728634552),
-    vec2(0.2386191860831969, 0.23395696728634552),
-    vec2(0.6612093864662645, 0.18038078652406936),
-    vec2(0.9324695142031519, 0.08566224618958514),
-    vec2(-0.9491079123427586, 0.06474248308443487),
-    vec2(-0.7415311855993945, 0.13985269574463843),
-    vec2(-0.4058451513773972, 0.19091502525255935),
-    vec2(0.0, 0.20897959183673465),
-    vec2(0.4058451513773972, 0.19091502525255935),
-    vec2(0.7415311855993945, 0.13985269574463843),
-    vec2(0.9491079123427586, 0.06474248308443487),
-    vec2(-0.9602898564975362, 0.05061426814518853),
-    vec2(-0.7966664774136267, 0.11119051722668721),
-    vec2(-0.525532409916329, 0.15685332293894344),
-    vec2(-0.18343464249564978, 0.18134189168918083),
-    vec2(0.18343464249564978, 0.18134189168918083),
-    vec2(0.525532409916329, 0.15685332293894344),
-    vec2(0.7966664774136267, 0.11119051722668721),
-    vec2(0.9602898564975362, 0.05061426814518853),
-);
-
-fn gauss_legendre(grid: u32, i: u32) -> vec2<f32> {
-    return GAUSS_LEGENDRE[grid * (grid - 1u) / 2u - 1u + i];
-}
-
-fn light_rectangle(light: Light, p: vec3<f32>, i: u32) -> Incidence {
-    let u = gauss_legendre(light.grid, i % light.grid);
-    let v = gauss_legendre(light.grid, i / light.grid);
+// `u` and `v` are a node on [−1, 1] and its weight along each edge (src/optics/quadrature.rs):
+// a table of them here would be copied for every sample.
+fn light_rectangle(light: Light, p: vec3<f32>, u: vec2<f32>, v: vec2<f32>) -> Incidence {
     let towards = light.place + light.half_edge_u * u.x + light.half_edge_v * v.x - p;
     let distance_squared = dot(towards, towards);
     let l = towards / max(sqrt(distance_squared), LENGTH_MIN);

@@ -48,6 +48,8 @@ struct Paper {
     interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,
+    // Nodes and weights (xy) of the rules of 2 to 7 points.
+    quadrature: array<vec4<f32>, 27>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paper: Paper;
@@ -280,7 +282,11 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
             if light.grid == 0u {
                 incidence = light_punctual(light, in.local);
             } else {
-                incidence = light_rectangle(light, in.local, i);
+                // The rule of n points begins behind those of 2 … n − 1.
+                let rule = light.grid * (light.grid - 1u) / 2u - 1u;
+                let u = paper.quadrature[rule + i % light.grid].xy;
+                let v = paper.quadrature[rule + i / light.grid].xy;
+                incidence = light_rectangle(light, in.local, u, v);
             }
 #else
         {

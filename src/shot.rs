@@ -1,6 +1,9 @@
 //! Pictures without a window: the stage rendered into a float image and read back.
 
-use std::sync::{Arc, Mutex};
+use std::{
+    path::PathBuf,
+    sync::{Arc, Mutex},
+};
 
 use bevy::{
     app::{AppLabel, PluginsState, SubApps},
@@ -24,6 +27,8 @@ use bevy::{
 
 use crate::{
     device::{self, NoDevice},
+    manifest::exhibit::Scene,
+    maps::MapError,
     stage::{
         Arranged, Library, Shown, StagePlugin,
         camera::{camera_bundle, without_clusters},
@@ -36,12 +41,17 @@ use crate::{
 pub enum ShotError {
     #[error(transparent)]
     NoDevice(#[from] NoDevice),
-    /// Maps that cannot be decoded, a line each.
-    #[error("{}", .0.join("\n"))]
-    Maps(Vec<String>),
+    /// Maps that cannot be decoded, with their paths.
+    #[error("{}", lines(.0))]
+    Maps(Vec<(PathBuf, MapError)>),
     /// A fault of Recto's own shaders or of the driver.
     #[error("the graphics device refused: {0}")]
     Device(String),
+}
+
+fn lines(faults: &[(PathBuf, MapError)]) -> String {
+    let lines: Vec<String> = faults.iter().map(|(_, error)| error.to_string()).collect();
+    lines.join("\n")
 }
 
 /// A rendered picture.
@@ -169,28 +179,24 @@ impl Darkroom {
             .map_err(|error| ShotError::Device(error.to_string()))
     }
 
-    /// Arranges `shown` and waits until everything it needs is on the GPU.
+    /// Arranges `shown` and waits until everything it needs is on the GPU; the next frame is
+    /// the picture.
     ///
     /// # Errors
     /// [`ShotError::Maps`] with every map that cannot be decoded, or [`ShotError::Device`].
     pub fn arrange(&mut self, shown: Shown, size: [u32; 2]) -> Result<(), ShotError> {
-        self.resize(UVec2::from_array(size));
-        let has_legend = shown
-            .scene
-            .overlays
-            .iter()
-            .any(|(_, opacity)| *opacity > 0.0);
-        let text_camera = self.text_camera;
-        if let Some(mut camera) = self.world().get_mut::<Camera>(text_camera) {
-            camera.is_active = has_legend;
-        }
+        // Maps and pipelines are made ready on a picture of one pixel, which costs no time.
+        self.look(UVec2::ONE);
+        self.activate(true, has_legend(&shown.scene));
         self.world().insert_resource(shown);
         loop {
             self.frame()?;
-            let world = self.apps.main.world();
-            let library = world.resource::<Library>();
+            let world = self.apps.main.world_mut();
+            let mut library = world.resource_mut::<Library>();
             if !library.faults.is_empty() && !library.is_busy() {
-                return Err(ShotError::Maps(library.faults.clone()));
+                let faults = std::mem::take(&mut library.faults);
+                library.clear();
+                return Err(ShotError::Maps(faults));
             }
             if world.resource::<Arranged>().is_settled() {
                 break;
@@ -200,7 +206,11 @@ impl Darkroom {
         for _ in 0..SETTLING_FRAMES {
             self.frame()?;
         }
-        self.check_pipelines()
+        self.check_pipelines()?;
+        self.look(UVec2::from_array(size));
+        // The legend is laid out for the new height, and a new target's first frame is empty.
+        self.world().resource_mut::<Shown>().set_changed();
+        self.frame()
     }
 
     /// One picture of `shown`, with a legend if overlays lie on it.
@@ -208,14 +218,22 @@ impl Darkroom {
     /// # Errors
     /// As [`Darkroom::arrange`].
     pub fn take(&mut self, shown: Shown, size: [u32; 2]) -> Result<Picture, ShotError> {
-        let has_legend = shown
-            .scene
-            .overlays
-            .iter()
-            .any(|(_, opacity)| *opacity > 0.0);
+        let has_legend = has_legend(&shown.scene);
         self.arrange(shown, size)?;
-        let target = self.target.clone();
-        let bytes = self.capture(target)?;
+        let wanted = [Some(&self.target), has_legend.then_some(&self.text_target)];
+        let targets: Vec<Handle<Image>> = wanted.into_iter().flatten().cloned().collect();
+        let taken: Vec<Taken> = targets
+            .into_iter()
+            .map(|target| self.expose(target))
+            .collect();
+        self.frame()?;
+        // While the bytes come back nothing needs to be drawn again.
+        self.activate(false, false);
+        let mut bytes = self.develop(&taken)?.into_iter();
+        let (bytes, text) = (
+            bytes.next().unwrap_or_default(),
+            bytes.next().unwrap_or_default(),
+        );
         let pixels = bytes
             .chunks_exact(16)
             .map(|texel| {
@@ -225,20 +243,14 @@ impl Darkroom {
                 })
             })
             .collect();
-        let legend = if has_legend {
-            let target = self.text_target.clone();
-            let bytes = self.capture(target)?;
-            let linear = |byte: u8| crate::colour::srgb_decode(f64::from(byte) / 255.0);
-            bytes
-                .chunks_exact(4)
-                .map(|texel| {
-                    let [r, g, b] = [texel[0], texel[1], texel[2]].map(|c| linear(c) as f32);
-                    [r, g, b, f32::from(texel[3]) / 255.0]
-                })
-                .collect()
-        } else {
-            Vec::new()
-        };
+        let linear = |byte: u8| crate::colour::srgb_decode(f64::from(byte) / 255.0);
+        let legend = text
+            .chunks_exact(4)
+            .map(|texel| {
+                let [r, g, b] = [texel[0], texel[1], texel[2]].map(|c| linear(c) as f32);
+                [r, g, b, f32::from(texel[3]) / 255.0]
+            })
+            .collect();
         Ok(Picture {
             width: size[0],
             height: size[1],
@@ -247,7 +259,8 @@ impl Darkroom {
         })
     }
 
-    fn resize(&mut self, size: UVec2) {
+    /// Points the cameras at pictures of `size`.
+    fn look(&mut self, size: UVec2) {
         if size == self.size {
             return;
         }
@@ -266,9 +279,18 @@ impl Darkroom {
         ));
     }
 
-    fn capture(&mut self, target: Handle<Image>) -> Result<Vec<u8>, ShotError> {
-        let captured = Arc::new(Mutex::new(None));
-        let slot = captured.clone();
+    fn activate(&mut self, picture: bool, text: bool) {
+        for (entity, active) in [(self.camera, picture), (self.text_camera, text)] {
+            if let Some(mut camera) = self.world().get_mut::<Camera>(entity) {
+                camera.is_active = active;
+            }
+        }
+    }
+
+    /// Asks for what the next frame draws into `target`.
+    fn expose(&mut self, target: Handle<Image>) -> Taken {
+        let taken = Taken::default();
+        let slot = taken.clone();
         self.world().spawn(Screenshot::image(target)).observe(
             move |event: On<ScreenshotCaptured>| {
                 if let Ok(mut slot) = slot.lock() {
@@ -276,10 +298,21 @@ impl Darkroom {
                 }
             },
         );
+        taken
+    }
+
+    /// Waits for the bytes of all that was taken.
+    fn develop(&mut self, taken: &[Taken]) -> Result<Vec<Vec<u8>>, ShotError> {
+        let mut bytes = vec![None; taken.len()];
         for _ in 0..PATIENCE_FRAMES {
             self.frame()?;
-            if let Some(bytes) = captured.lock().ok().and_then(|mut slot| slot.take()) {
-                return Ok(bytes);
+            for (bytes, taken) in bytes.iter_mut().zip(taken) {
+                if let Some(arrived) = taken.lock().ok().and_then(|mut slot| slot.take()) {
+                    *bytes = Some(arrived);
+                }
+            }
+            if bytes.iter().all(Option::is_some) {
+                return Ok(bytes.into_iter().flatten().collect());
             }
         }
         Err(ShotError::Device(
@@ -300,6 +333,13 @@ impl Darkroom {
         Ok(())
     }
 }
+
+fn has_legend(scene: &Scene) -> bool {
+    scene.overlays.iter().any(|(_, opacity)| *opacity > 0.0)
+}
+
+/// Where the device leaves a captured picture.
+type Taken = Arc<Mutex<Option<Vec<u8>>>>;
 
 const PICTURE: TextureFormat = TextureFormat::Rgba32Float;
 const TEXT: TextureFormat = TextureFormat::Rgba8UnormSrgb;

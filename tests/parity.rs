@@ -11,8 +11,9 @@ use glam::{DVec3, Vec3};
 use recto::{
     optics::{
         fresnel::{fresnel_dielectric, fresnel_schlick, normal_reflectance},
-        lamp::{GRIDS, Incidence, Light, Shape, gauss_legendre},
+        lamp::{Incidence, Light, Shape},
         microfacet::{d_ggx, v_smith},
+        quadrature::{GRIDS, gauss_legendre},
         table::{
             ALPHA_FIT_MIN, AlphaPolynomial, Interface, InterfaceMean, InterfaceTable, LOST_TERMS,
             MU_TERMS,
@@ -504,6 +505,13 @@ struct LampCase {
     sample: u32,
 }
 
+impl LampCase {
+    /// Node and weight along both edges of a rectangle's sample in a rule of `grid` points.
+    fn rule(&self, grid: u32) -> [[f64; 2]; 2] {
+        [self.sample % grid, self.sample / grid].map(|i| gauss_legendre(grid, i))
+    }
+}
+
 /// The shader's functions for lamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Lamps {
@@ -517,7 +525,7 @@ impl Lamps {
         match self {
             Self::Distant => "light_distant(x.light)",
             Self::Punctual => "light_punctual(x.light, x.p)",
-            Self::Rectangle => "light_rectangle(x.light, x.p, x.sample)",
+            Self::Rectangle => "light_rectangle(x.light, x.p, x.u, x.v)",
         }
     }
 }
@@ -545,7 +553,7 @@ fn lamp(seeded: &Seeded, lamps: Lamps) -> Light {
                 axis,
                 half_u: half_u * seeded.log_or_zero(0.05, 5e3),
                 half_v: axis.cross(half_u) * seeded.log_or_zero(0.05, 5e3),
-                grid: GRIDS.start() + (seeded.bits() % 7) as u32,
+                grid: GRIDS.start() + (seeded.bits() % 6) as u32,
             }
         }
         (Lamps::Distant, _) | (_, 0) => Shape::Distant { towards: -axis },
@@ -627,8 +635,7 @@ fn lamp_rounding(case: &LampCase, twin: &Incidence) -> (f64, f64) {
             grid,
             ..
         } => {
-            let [u, weight_u] = gauss_legendre(grid, case.sample % grid);
-            let [v, weight_v] = gauss_legendre(grid, case.sample / grid);
+            let [[u, weight_u], [v, weight_v]] = case.rule(grid);
             let towards = centre + half_u * u + half_v * v - wide(case.p);
             let share = weight_u * weight_v;
             let places = centre.abs() + half_u.abs() + half_v.abs() + wide(case.p).abs();
@@ -652,7 +659,14 @@ fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, String> 
         .flat_map(|case| {
             let mut words = words(&case.light);
             words.extend(case.p.to_array());
-            words.push(f32::from_bits(case.sample));
+            // A vector of two begins at a multiple of eight bytes.
+            words.push(0.0);
+            words.extend(
+                case.rule(case.light.grid.max(*GRIDS.start()))
+                    .concat()
+                    .iter()
+                    .map(|v| *v as f32),
+            );
             words
         })
         .collect();
@@ -664,7 +678,7 @@ fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, String> 
         lamps.call()
     );
     let text = format!(
-        "{physics}\nstruct Case {{ light: Light, p: vec3<f32>, sample: u32 }}\n{}",
+        "{physics}\nstruct Case {{ light: Light, p: vec3<f32>, u: vec2<f32>, v: vec2<f32> }}\n{}",
         entry("Case", cases.len(), 6, &body)
     );
     let found = gpu.run(&text, &given, cases.len(), 6);

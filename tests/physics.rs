@@ -12,9 +12,10 @@ use recto::{
     maps::encode::save_png_rgb8,
     optics::{
         fresnel::fresnel_dielectric,
-        lamp::{GRIDS, Light, Shape, polygon_form},
+        lamp::{Light, Shape, polygon_form},
         lamp_units::{rectangle_form, spot_share},
         microfacet::{d_ggx, directional_albedo, v_smith},
+        quadrature::GRIDS,
         table::{ALPHA_FIT_MIN, InterfaceTable},
         tier::{Facing, Surface, brdf_draft, brdf_gallery, brdf_lambert, facing},
     },
@@ -438,7 +439,7 @@ fn rectangles_meet_the_polygon_formula() {
 #[test]
 fn a_rectangle_below_the_horizon_shines_with_its_upper_part() {
     // Its lower half lies below the plane. A Gauss rule expects a smooth light and meets a kink
-    // at the horizon instead, where the light is dim: 1.3% were measured.
+    // at the horizon instead, where the light is dim: 3.4% were measured.
     let (centre, half) = (DVec3::X * 500.0, DVec2::splat(200.0));
     let (lamp, _) = rectangle(centre, -DVec3::X, half, *GRIDS.end());
     let sampled = lamp.illuminance(DVec3::ZERO, DVec3::Z).x;
@@ -446,7 +447,7 @@ fn a_rectangle_below_the_horizon_shines_with_its_upper_part() {
     let upper = [(-1.0, 0.0), (1.0, 0.0), (1.0, 1.0), (-1.0, 1.0)]
         .map(|(y, z)| centre + DVec3::new(0.0, y, z) * 200.0);
     let exact = polygon_form(&upper, DVec3::Z);
-    assert!((sampled / exact - 1.0).abs() < 1.5e-2, "{sampled} {exact}");
+    assert!((sampled / exact - 1.0).abs() < 4e-2, "{sampled} {exact}");
 }
 
 #[test]

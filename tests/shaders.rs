@@ -13,6 +13,7 @@ use recto::{
     manifest::{MAX_LAMPS, MAX_OVERLAYS},
     optics::{
         microfacet::{ALPHA_MIN, MU_MIN},
+        quadrature::GAUSS_LEGENDRE,
         table::{ALPHA_FIT_MIN, LOST_TERMS, MU_TERMS},
     },
     sheet::{
@@ -334,6 +335,7 @@ impl Sentinel {
             interface_table: self.interface().0,
             lights: std::array::from_fn::<_, MAX_LAMPS, _>(|_| self.light().0),
             overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),
+            quadrature: std::array::from_fn::<_, { GAUSS_LEGENDRE.len() }, _>(|_| self.vec4()),
         })
     }
 }

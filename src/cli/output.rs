@@ -1,5 +1,6 @@
 //! The two streams, neither of which has to be open, and files that are yet to be written.
 
+pub use crate::stage::say;
 use std::{
     fmt::Display,
     fs,
@@ -16,12 +17,6 @@ pub fn result(text: impl Display) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     writeln!(out, "{text}")?;
     Ok(out.flush()?)
-}
-
-/// Writes words and a newline to standard error.
-pub fn say(words: impl Display) {
-    // Nobody is left to be told that standard error is closed.
-    let _ = writeln!(io::stderr().lock(), "{words}");
 }
 
 /// A bar on standard error, where that is a terminal.

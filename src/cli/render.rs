@@ -13,11 +13,11 @@ use super::{
 use crate::{
     develop::{self, Print},
     device,
-    manifest::{Exhibit, Scene, overrides::Overrides},
+    manifest::{Exhibit, Faults, Scene, overrides::Overrides},
     maps::encode,
     needs::{MapUse, Needs},
     optics::tier::Tier,
-    shot::{Darkroom, Picture},
+    shot::{Darkroom, Picture, ShotError},
     stage::Shown,
 };
 
@@ -84,7 +84,10 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 
     let exhibit = super::read(&arguments.exhibit)?;
     let (exhibit, scenes) = scenes(exhibit, arguments.scene.overrides(), all, size)?;
-    verify(&exhibit, &scenes, tier)?;
+    if all {
+        // A damaged map of the last scene must be found before the first is written.
+        verify(&exhibit, &scenes, tier)?;
+    }
     for sentence in &exhibit.not_shown_yet {
         output::say(sentence);
     }
@@ -102,7 +105,10 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         return render_all(&scenes, &out, size, shown);
     }
     for scene in &scenes {
-        let picture = Darkroom::new(samples(scene))?.take(shown(scene), size)?;
+        let mut darkroom = Darkroom::new(samples(scene))?;
+        let picture = darkroom
+            .take(shown(scene), size)
+            .map_err(|error| placed(&exhibit, error))?;
         match format {
             Format::Exr => {
                 encode::save_exr_rgb(&out, picture.width, picture.height, &picture.pixels)?;
@@ -205,6 +211,22 @@ fn verify(exhibit: &Exhibit, scenes: &[Scene], tier: Tier) -> Result<(), Failure
     let sides = needs.iter().flat_map(|needs| &needs.sides);
     let maps = sides.flat_map(|side| &side.maps);
     Ok(exhibit.verify(maps.map(MapUse::file))?)
+}
+
+/// A map that cannot be decoded is a fault at the place in the manifest that names it.
+fn placed(exhibit: &Exhibit, error: ShotError) -> Failure {
+    match error {
+        ShotError::Maps(maps) => {
+            let faults = maps
+                .iter()
+                .map(|(path, error)| exhibit.map_fault(path, error));
+            match Faults::new(faults.collect()) {
+                Some(faults) => faults.into(),
+                None => ShotError::Maps(maps).into(),
+            }
+        }
+        error => error.into(),
+    }
 }
 
 fn developed(scene: &Scene, picture: &Picture) -> Print {

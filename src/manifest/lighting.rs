@@ -157,6 +157,6 @@ pub fn grid_for(apparent: f64) -> u32 {
         a if a < 0.3 => 2,
         a if a < 1.0 => 3,
         a if a < 2.0 => 5,
-        _ => 8,
+        _ => 7,
     }
 }

@@ -18,5 +18,6 @@ pub mod lamp;
 pub mod lamp_units;
 pub mod medium;
 pub mod microfacet;
+pub mod quadrature;
 pub mod table;
 pub mod tier;

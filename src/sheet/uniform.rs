@@ -9,6 +9,7 @@ use crate::{
     maps::Coding,
     optics::{
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
+        quadrature::GAUSS_LEGENDRE,
         table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
     },
 };
@@ -171,6 +172,7 @@ pub struct PaperUniform {
     pub interface_table: InterfaceUniform,
     pub lights: [LightUniform; MAX_LAMPS],
     pub overlays: [MapPlace; MAX_OVERLAYS],
+    pub quadrature: [Vec4; GAUSS_LEGENDRE.len()],
 }
 
 impl PaperUniform {
@@ -194,6 +196,8 @@ impl PaperUniform {
             *slot = LightUniform::new(&light.rotated(local_from_table), as_points);
         }
         self.ambient = ambient.as_vec3();
+        self.quadrature =
+            GAUSS_LEGENDRE.map(|[node, weight]| DVec4::new(node, weight, 0.0, 0.0).as_vec4());
     }
 
     /// Sets the place of the normal map, and how its texels are coded.

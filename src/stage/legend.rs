@@ -30,7 +30,7 @@ impl Plugin for LegendPlugin {
         app.add_systems(Startup, load_face).add_systems(
             Update,
             draw.in_set(StageSet::Arrange)
-                .run_if(resource_exists_and_changed::<Shown>),
+                .run_if(resource_exists::<Shown>),
         );
     }
 }
@@ -66,12 +66,15 @@ fn draw(
     mut commands: Commands,
     shown: Res<Shown>,
     face: Option<Res<Face>>,
-    cameras: Query<(Entity, &TextCamera)>,
+    cameras: Query<(Entity, Ref<TextCamera>)>,
     drawn: Query<Entity, With<Legend>>,
 ) {
     let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
         return;
     };
+    if !shown.is_changed() && !text.is_changed() {
+        return;
+    }
     for entity in &drawn {
         commands.entity(entity).despawn();
     }

@@ -2,6 +2,7 @@
 
 use std::{
     fmt,
+    path::PathBuf,
     sync::{Arc, Mutex, mpsc},
 };
 
@@ -43,6 +44,18 @@ impl Request {
     }
 }
 
+impl Request {
+    /// The file behind it; empty for a flat sheet, which has none.
+    fn path(&self) -> PathBuf {
+        match self {
+            Self::Map(map) => map.file().path.clone(),
+            Self::Surface(Surface::Height(map), _) => map.file.path.clone(),
+            Self::Surface(Surface::Gltf(path), _) => path.clone(),
+            Self::Surface(Surface::Flat, _) => PathBuf::new(),
+        }
+    }
+}
+
 enum Decoded {
     Map(Pyramid),
     Surface(SideSurface),
@@ -68,8 +81,8 @@ type Arrival = (u64, Request, Result<Decoded, MapError>);
 #[derive(Resource)]
 pub struct Library {
     entries: Vec<(Request, Entry)>,
-    /// What could not be decoded, one line each.
-    pub faults: Vec<String>,
+    /// What could not be decoded, and why.
+    pub faults: Vec<(PathBuf, MapError)>,
     anisotropy: u16,
     /// Arrivals of an earlier exhibit are dropped.
     generation: u64,
@@ -168,7 +181,7 @@ pub fn receive(mut library: ResMut<Library>, mut images: ResMut<Assets<Image>>) 
             }
             Ok(Decoded::Surface(surface)) => Entry::Ready(Held::Surface(Arc::new(surface))),
             Err(error) => {
-                library.faults.push(error.to_string());
+                library.faults.push((request.path(), error));
                 Entry::Faulty
             }
         };

@@ -7,7 +7,7 @@ pub mod library;
 pub mod reload;
 mod sides;
 
-use std::sync::Arc;
+use std::{fmt::Display, io::Write, sync::Arc};
 
 use bevy::prelude::*;
 use glam::DQuat;
@@ -67,6 +67,11 @@ impl Shown {
         self.exhibit
             .text(wording, self.scene.language.as_deref().unwrap_or_default())
     }
+}
+
+/// Words for the curator, on standard error; nobody may be listening there any more.
+pub fn say(words: impl Display) {
+    let _ = writeln!(std::io::stderr(), "{words}");
 }
 
 /// What happens to the stage in one frame, in this order.

@@ -21,7 +21,7 @@ use notify::{
     event::{AccessKind, AccessMode},
 };
 
-use super::{Arranged, Library, StageSet, Waker};
+use super::{Arranged, Library, StageSet, Waker, say};
 use crate::manifest::{
     Fault, Faults,
     exhibit::{Exhibit, MapFile, Surface},
@@ -45,11 +45,11 @@ impl Plugin for ReloadPlugin {
         let watching = watcher.spawn(move || {
             if let Err(error) = watch(&folder, reader, &sender, waker.as_ref()) {
                 // The exhibit is shown all the same.
-                eprintln!("recto: saves are not noticed, {error}");
+                say(format_args!("recto: saves are not noticed, {error}"));
             }
         });
         if let Err(error) = watching {
-            eprintln!("recto: saves are not noticed, {error}");
+            say(format_args!("recto: saves are not noticed, {error}"));
         }
         app.insert_resource(News(Mutex::new(receiver)))
             .add_message::<Reread>()
@@ -111,7 +111,7 @@ fn watch(
             Ok(None) => {}
             Ok(Some((sound, warnings))) => {
                 for warning in warnings {
-                    eprintln!("{warning}");
+                    say(warning);
                 }
                 if sender.send(sound).is_err() {
                     break;
@@ -120,7 +120,7 @@ fn watch(
                     wake();
                 }
             }
-            Err(faults) => eprintln!("{faults}"),
+            Err(faults) => say(faults),
         }
     }
     Ok(())

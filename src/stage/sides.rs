@@ -1,7 +1,7 @@
 //! The sides of the sheet as entities.
 
 use bevy::{camera::visibility::NoFrustumCulling, ecs::system::SystemParam, prelude::*};
-use glam::{DMat4, DQuat, DVec4};
+use glam::{DMat4, DQuat};
 
 use super::{
     Library, Shown, TABLE, Waker,
@@ -33,6 +33,7 @@ const BARE_PAPER: [f32; 3] = [0.72, 0.67, 0.57];
 pub struct Arranged {
     dither: bool,
     needs: Option<(Needs, Request)>,
+    drawing: Option<usize>,
     sides: Vec<ArrangedSide>,
     settled: bool,
 }
@@ -49,6 +50,7 @@ impl Arranged {
         Self {
             dither,
             needs: None,
+            drawing: None,
             sides: Vec::new(),
             settled: false,
         }
@@ -106,6 +108,16 @@ pub fn arrange(
             .bypass_change_detection()
             .take(&requests, waker.as_deref())
         else {
+            // What is there follows the hand while the rest is on its way.
+            if arranged.drawing == Some(shown.scene.drawing) {
+                for side in &arranged.sides {
+                    let seen_alike =
+                        side.needs.terms.parallel_eye == shown.scene.camera.distance_mm.is_none();
+                    if seen_alike && let Some(mut material) = materials.get_mut(&side.material) {
+                        aim(&mut material.paper, &shown, drawing, side.name);
+                    }
+                }
+            }
             return;
         };
         library.bypass_change_detection().keep(&requests);
@@ -148,6 +160,7 @@ pub fn arrange(
             });
         }
         arranged.needs = Some(wanted);
+        arranged.drawing = Some(shown.scene.drawing);
     }
     let lighting = shown.exhibit.lighting(&shown.scene);
     for side in &arranged.sides {
@@ -222,6 +235,19 @@ fn side_surface(recto: &SideSurface, drawing: &Drawing, side: SideName) -> SideS
     }
 }
 
+/// Points the eye at a side as the sheet lies now; gives the side's turn, table from local.
+fn aim(uniform: &mut PaperUniform, shown: &Shown, drawing: &Drawing, side: SideName) -> DQuat {
+    let table_from_local = shown.pose * drawing.rest_pose(side).inverse();
+    let eye = shown.eye();
+    let clip_from_table = eye.clip_from_table(shown.aspect);
+    uniform.set_eye(
+        clip_from_table,
+        eye.place(),
+        DMat4::from_quat(table_from_local),
+    );
+    table_from_local
+}
+
 /// Eye, lamps and overlays as they are now.
 fn place(
     uniform: &mut PaperUniform,
@@ -230,15 +256,7 @@ fn place(
     side: &ArrangedSide,
     lighting: &Lighting,
 ) {
-    let table_from_local: DQuat = shown.pose * drawing.rest_pose(side.name).inverse();
-    let eye = shown.eye();
-    let place: DVec4 = eye.place();
-    let table_from_local_matrix = DMat4::from_quat(table_from_local);
-    uniform.set_eye(
-        eye.clip_from_table(shown.aspect),
-        place,
-        table_from_local_matrix,
-    );
+    let table_from_local = aim(uniform, shown, drawing, side.name);
     uniform.set_lights(
         &lighting.lights,
         lighting.ambient,

@@ -30,6 +30,7 @@ use crate::{
     device::{self, NoDevice},
     manifest::{Exhibit, Fault, Faults, Severity, did_you_mean, quote, quoted_list},
     optics::tier::Tier,
+    stage::say,
 };
 
 /// How an exhibit is shown.
@@ -64,7 +65,7 @@ pub fn show(path: &Path, options: &ShowOptions) -> Result<u8, ShowError> {
     let (exhibit, warnings) = Exhibit::read(path)?;
     let scene = first_scene(&exhibit, options.scene.as_deref())?;
     for warning in warnings {
-        eprintln!("{warning}");
+        say(warning);
     }
     device::probe()?;
     display::probe()?;

@@ -41,6 +41,7 @@ use crate::{
         camera::{camera_bundle, without_clusters},
         legend::TextCamera,
         reload::{ReloadPlugin, Reread},
+        say,
     },
 };
 
@@ -348,8 +349,8 @@ fn fall_back(
     } else {
         *told
     };
-    for fault in &library.faults[from..] {
-        eprintln!("{fault}");
+    for (path, error) in &library.faults[from..] {
+        say(shown.exhibit.map_fault(path, error));
     }
     *told = library.faults.len();
     if hand.retreat() {
