@@ -1,4 +1,28 @@
-//! Recto.
+//! Recto shows old-master drawings as if the sheet lay in your hands: an exhibit manifest
+//! becomes lit sheets of paper, in a window or in files.
+//!
+//! # The house
+//! | module | what it is |
+//! |---|---|
+//! | [`units`], [`colour`] | quantities with their unit; encoded and linear colour, CIELAB, lamps' white |
+//! | [`optics`] | what paper, ink and lamps do with light, in f64; twins in `shaders/paper_bsdf.wgsl` |
+//! | [`maps`] | picture files → mip chains, each kind filtered in its own way; files written whole |
+//! | [`manifest`] | `exhibit.toml` → a validated [`Exhibit`](manifest::Exhibit), or every fault at once |
+//! | [`needs`] | what a scene requires and why: terms, maps, sides |
+//! | [`sheet`] | the sheet in Bevy: mesh, the one material, the only narrowing from f64 to f32 |
+//! | [`stage`] | what is shown: loading, sides, camera, legend, reload on save |
+//! | [`visitor`] | the window: hand, lamp, keys, caption |
+//! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
+//! | [`device`] | whether there is a graphics device |
+//! | [`sample`] | the sample exhibits, drawn by code |
+//! | [`cli`] | one file for each command |
+//!
+//! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
+//! sheet → window or file. `units`, `colour`, `maps`, `manifest`, `needs`, `optics` and
+//! `sample` never name Bevy; `tests/layers.rs` holds the table of who may import whom.
+//!
+//! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes
+//! [`stage::Shown`], then the stage is arranged from it.
 #![forbid(unsafe_code)]
 
 pub mod cli;

@@ -192,16 +192,17 @@ impl Darkroom {
         loop {
             self.frame()?;
             let world = self.apps.main.world_mut();
+            let settled = world.resource::<Arranged>().is_settled();
             let mut library = world.resource_mut::<Library>();
             if !library.faults.is_empty() && !library.is_busy() {
                 let faults = std::mem::take(&mut library.faults);
                 library.clear();
                 return Err(ShotError::Maps(faults));
             }
-            if world.resource::<Arranged>().is_settled() {
+            if settled {
                 break;
             }
-            std::thread::sleep(std::time::Duration::from_millis(1));
+            library.wait();
         }
         for _ in 0..SETTLING_FRAMES {
             self.frame()?;

@@ -1,6 +1,6 @@
 //! Mip chains: every level is the exact area mean of the picture, filtered before it is stored.
 
-use half::f16;
+use half::{f16, slice::HalfFloatSliceExt};
 use rayon::prelude::*;
 
 /// Channel values as a graphics card stores them, interleaved, rows from the top.
@@ -38,12 +38,27 @@ impl Texels {
         })
     }
 
-    /// The bytes to upload, in the machine's order.
-    pub fn to_bytes(&self) -> Vec<u8> {
+    /// Appends the bytes to upload, in the machine's order.
+    pub fn append_to(&self, bytes: &mut Vec<u8>) {
         match self {
-            Self::Unorm8(v) => v.clone(),
-            Self::Unorm16(v) => v.iter().flat_map(|v| v.to_ne_bytes()).collect(),
-            Self::Half(v) => v.iter().flat_map(|v| v.to_ne_bytes()).collect(),
+            Self::Unorm8(values) => bytes.extend_from_slice(values),
+            Self::Unorm16(values) => bytes.extend_from_slice(bytemuck::cast_slice(values)),
+            Self::Half(values) => {
+                bytes.extend_from_slice(bytemuck::cast_slice(values.reinterpret_cast()));
+            }
+        }
+    }
+
+    /// The same values as half floats, for devices that do not read 16-bit integers.
+    pub fn into_half(self) -> Self {
+        match self {
+            Self::Unorm16(values) => Self::Half(
+                values
+                    .into_iter()
+                    .map(|value| f16::from_f32(f32::from(value) / 65535.0))
+                    .collect(),
+            ),
+            other => other,
         }
     }
 }

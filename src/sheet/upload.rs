@@ -9,18 +9,22 @@ use bevy::{
 use crate::maps::{Pyramid, Texels};
 
 /// A map with its mip chain, filtered linearly; `anisotropy` 1 samples exactly as the
-/// closed-form tests expect, 16 keeps tilted sheets sharp.
-pub fn map_image(pyramid: Pyramid, anisotropy: u16) -> Image {
+/// closed-form tests expect, 16 keeps tilted sheets sharp. Devices
+/// without filtered 16-bit integers (`reads_unorm16`) get half floats.
+pub fn map_image(pyramid: Pyramid, anisotropy: u16, reads_unorm16: bool) -> Image {
     let (width, height) = (pyramid.levels[0].width, pyramid.levels[0].height);
+    let mut pyramid = pyramid;
+    if !reads_unorm16 {
+        for level in &mut pyramid.levels {
+            let texels = std::mem::replace(&mut level.texels, Texels::Unorm8(Vec::new()));
+            level.texels = texels.into_half();
+        }
+    }
     let format = format(&pyramid);
     let mip_level_count = pyramid.levels.len() as u32;
     let mut data = Vec::new();
     for level in pyramid.levels {
-        match level.texels {
-            Texels::Unorm8(values) => data.extend(values),
-            Texels::Unorm16(values) => data.extend(values.iter().flat_map(|v| v.to_le_bytes())),
-            Texels::Half(values) => data.extend(values.iter().flat_map(|v| v.to_le_bytes())),
-        }
+        level.texels.append_to(&mut data);
     }
     let mut image = texture(width, height, format);
     image.texture_descriptor.mip_level_count = mip_level_count;
@@ -64,4 +68,30 @@ fn texture(width: u32, height: u32, format: TextureFormat) -> Image {
         format,
         RenderAssetUsages::RENDER_WORLD,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::Level;
+
+    #[test]
+    fn sixteen_bits_become_half_floats_where_they_must() {
+        let pyramid = || Pyramid {
+            channels: 1,
+            levels: vec![Level {
+                width: 2,
+                height: 1,
+                texels: Texels::Unorm16(vec![0, 65535]),
+            }],
+            replaced: 0,
+        };
+        let exact = map_image(pyramid(), 1, true);
+        assert_eq!(exact.texture_descriptor.format, TextureFormat::R16Unorm);
+        assert_eq!(exact.data, Some(vec![0, 0, 255, 255]));
+        let half = map_image(pyramid(), 1, false);
+        assert_eq!(half.texture_descriptor.format, TextureFormat::R16Float);
+        // 1.0 as a half float.
+        assert_eq!(half.data, Some(vec![0, 0, 0x00, 0x3c]));
+    }
 }

@@ -6,7 +6,10 @@ use std::{
     sync::{Arc, Mutex, mpsc},
 };
 
-use bevy::prelude::*;
+use bevy::{
+    prelude::*,
+    render::{renderer::RenderDevice, settings::WgpuFeatures},
+};
 use glam::{DAffine2, DVec2};
 
 use crate::{
@@ -57,7 +60,7 @@ impl Request {
 }
 
 enum Decoded {
-    Map(Pyramid),
+    Map(Box<Image>, Coding),
     Surface(SideSurface),
 }
 
@@ -84,6 +87,9 @@ pub struct Library {
     /// What could not be decoded, and why.
     pub faults: Vec<(PathBuf, MapError)>,
     anisotropy: u16,
+    /// Whether the device filters 16-bit integers.
+    reads_unorm16: bool,
+    arrived: Vec<Arrival>,
     /// Arrivals of an earlier exhibit are dropped.
     generation: u64,
     sender: mpsc::Sender<Arrival>,
@@ -99,6 +105,8 @@ impl Library {
             entries: Vec::new(),
             faults: Vec::new(),
             anisotropy,
+            reads_unorm16: true,
+            arrived: Vec::new(),
             generation: 0,
             sender,
             receiver: Mutex::new(receiver),
@@ -136,6 +144,24 @@ impl Library {
         (held.len() == requests.len()).then_some(held)
     }
 
+    /// Waits until all that is being decoded has arrived, for pictures without a window: a
+    /// frame in the meantime would only take time from the decoding.
+    pub fn wait(&mut self) {
+        let decoding = |entry: &&(Request, Entry)| matches!(entry.1, Entry::Decoding);
+        let outstanding = self.entries.iter().filter(decoding).count();
+        let receiver = match self.receiver.get_mut() {
+            Ok(receiver) => receiver,
+            Err(poisoned) => poisoned.into_inner(),
+        };
+        // The library holds a sender itself, so this ends when everything is there.
+        while self.arrived.len() < outstanding {
+            let Ok(arrival) = receiver.recv() else { return };
+            if arrival.0 == self.generation {
+                self.arrived.push(arrival);
+            }
+        }
+    }
+
     /// Whether something is still being decoded.
     pub fn is_busy(&self) -> bool {
         self.entries
@@ -145,9 +171,14 @@ impl Library {
 
     fn decode(&self, request: Request, waker: Option<Waker>) {
         let (sender, generation) = (self.sender.clone(), self.generation);
+        let (anisotropy, reads_unorm16) = (self.anisotropy, self.reads_unorm16);
         rayon::spawn(move || {
             let decoded = match &request {
-                Request::Map(map) => load(map).map(Decoded::Map),
+                Request::Map(map) => load(map).map(|pyramid| {
+                    let coding = normal_coding(&pyramid.levels[0].texels);
+                    let image = upload::map_image(pyramid, anisotropy, reads_unorm16);
+                    Decoded::Map(Box::new(image), coding)
+                }),
                 Request::Surface(surface, size) => {
                     load_surface(surface, *size).map(Decoded::Surface)
                 }
@@ -161,24 +192,28 @@ impl Library {
     }
 }
 
+/// Finds out what the device can read, once.
+pub fn suit_device(device: Res<RenderDevice>, mut library: ResMut<Library>) {
+    library.reads_unorm16 = device
+        .features()
+        .contains(WgpuFeatures::TEXTURE_FORMAT_16BIT_NORM);
+}
+
 /// Takes in what was decoded.
 pub fn receive(mut library: ResMut<Library>, mut images: ResMut<Assets<Image>>) {
     // Looking must not count as a change.
     let silent = library.bypass_change_detection();
-    let arrivals: Vec<Arrival> = match silent.receiver.get_mut() {
-        Ok(receiver) => receiver.try_iter().collect(),
-        Err(poisoned) => poisoned.into_inner().try_iter().collect(),
-    };
+    let mut arrivals = std::mem::take(&mut silent.arrived);
+    match silent.receiver.get_mut() {
+        Ok(receiver) => arrivals.extend(receiver.try_iter()),
+        Err(poisoned) => arrivals.extend(poisoned.into_inner().try_iter()),
+    }
     for (generation, request, decoded) in arrivals {
         if generation != library.generation {
             continue;
         }
         let entry = match decoded {
-            Ok(Decoded::Map(pyramid)) => {
-                let coding = normal_coding(&pyramid.levels[0].texels);
-                let image = upload::map_image(pyramid, library.anisotropy);
-                Entry::Ready(Held::Map(images.add(image), coding))
-            }
+            Ok(Decoded::Map(image, coding)) => Entry::Ready(Held::Map(images.add(*image), coding)),
             Ok(Decoded::Surface(surface)) => Entry::Ready(Held::Surface(Arc::new(surface))),
             Err(error) => {
                 library.faults.push((request.path(), error));

@@ -96,6 +96,7 @@ impl Plugin for StagePlugin {
         app.add_plugins((SheetPlugin, legend::LegendPlugin))
             .insert_resource(Library::new(self.anisotropy))
             .insert_resource(Arranged::new(self.dither))
+            .add_systems(Startup, library::suit_device)
             .configure_sets(Update, (StageSet::Steer, StageSet::Arrange).chain())
             .add_systems(
                 Update,
