@@ -202,7 +202,9 @@ fn main() -> Result<(), Anything> {
             };
             let shown = Shown::at_rest(exhibit.clone(), scene.clone(), tier, 1.0);
             let mut room = Darkroom::with(1, add_floor)?;
-            let picture = room.take(shown, [SIZE, SIZE])?;
+            let picture = room.take(shown.clone(), [SIZE, SIZE])?;
+            // A picture taken is a room at rest: frames begin again.
+            room.arrange(shown, [SIZE, SIZE])?;
             shaded = picture
                 .pixels
                 .iter()

@@ -50,6 +50,11 @@ fn v_smith(mu_i: f32, mu_o: f32, alpha: f32) -> f32 {
     return 0.5 / (l_i + l_o);
 }
 
+fn v_hammon(mu_i: f32, mu_o: f32, alpha: f32) -> f32 {
+    let smooth_limit = 2.0 * mu_i * mu_o;
+    return 0.5 / (smooth_limit + (mu_i + mu_o - smooth_limit) * alpha);
+}
+
 // Twins of src/optics/table.rs
 
 struct Interface {
@@ -152,9 +157,13 @@ fn brdf_lambert(s: Surface) -> vec3<f32> {
 
 fn brdf_draft(s: Surface, g: Facing) -> vec3<f32> {
     let lobe = d_ggx(g.sin2_h, s.alpha)
-        * v_smith(g.mu_i, g.mu_o, s.alpha)
+        * v_hammon(g.mu_i, g.mu_o, s.alpha)
         * fresnel_schlick(g.cos_d, s.f_normal);
     return s.albedo * INV_PI + vec3(s.specular * lobe);
+}
+
+fn albedo_of(s: Surface, mean: InterfaceMean) -> vec3<f32> {
+    return min(s.albedo, vec3(1.0 / (mean.t_mean * mean.capture)));
 }
 
 fn brdf_gallery(
@@ -167,7 +176,7 @@ fn brdf_gallery(
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_dielectric(g.cos_d, s.eta);
-    let albedo = min(s.albedo, vec3(1.0 / (mean.t_mean * mean.capture)));
+    let albedo = albedo_of(s, mean);
     let diffuse = at_i.t * at_o.t * mean.capture * INV_PI;
     let compensated = mean.compensation * at_i.lost * at_o.lost;
     return albedo * diffuse + vec3(s.specular * lobe + compensated);

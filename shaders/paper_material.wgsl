@@ -5,7 +5,7 @@
 #import "embedded://recto/paper_bsdf.wgsl"::{
     ALPHA_MIN, INV_PI, MU_MIN,
     Facing, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Surface,
-    brdf_draft, brdf_gallery, brdf_lambert, facing, fit_powers, interface_at,
+    albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing, fit_powers, interface_at,
     interface_mean_at, interface_row, light_distant, light_punctual, light_rectangle,
 }
 
@@ -38,13 +38,16 @@ struct Paper {
     // Columns turn the stored x and y of a normal map into those of the side; then the offset.
     normal_axes: vec4<f32>,
     normal_offset: vec2<f32>,
-    // Display level of a sign, so that its colour is shown as its legend says.
+    // What a sign's colour is multiplied by before the display's level, so that it is shown as
+    // its legend says.
     sign_gain: f32,
     overlay_count: u32,
     albedo_place: MapPlace,
     normal_place: MapPlace,
     roughness_place: MapPlace,
     outline_place: MapPlace,
+    // Linear level at which a window shows a perfect diffuser (x); the rest is unused.
+    level: vec4<f32>,
     interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,
@@ -158,7 +161,7 @@ fn lay(
 }
 #endif
 
-#ifdef DITHER
+#ifdef DISPLAY
 // Interleaved gradient noise (Jimenez 2014) over one 8-bit step of the display's encoding.
 fn dithered(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
     let noise = fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))) - 0.5;
@@ -313,7 +316,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     }
 #ifdef AMBIENT
 #ifdef TIER_GALLERY
-    let diffuse = albedo * (at_o.t * mean.t_mean * mean.capture);
+    let diffuse = albedo_of(s, mean) * (at_o.t * mean.t_mean * mean.capture);
     radiance += (diffuse + vec3(1.0 - at_o.t)) * paper.ambient * INV_PI;
 #else
     radiance += brdf_lambert(s) * paper.ambient;
@@ -323,8 +326,9 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     radiance = radiance * (1.0 - sign_colour.a) + sign_colour.rgb * paper.sign_gain;
 #endif
     var colour = mix(paper.table, radiance, coverage);
-#ifdef DITHER
-    colour = dithered(colour, in.clip.xy);
+#ifdef DISPLAY
+    // Files keep linear light; their level is applied when they are encoded.
+    colour = dithered(colour * paper.level.x, in.clip.xy);
 #endif
     return vec4(min(colour, vec3(RADIANCE_MAX)), 1.0);
 }

@@ -27,7 +27,7 @@ pub struct Terms {
     pub roughness_map: bool,
     /// A map decides where there is paper.
     pub outline: bool,
-    /// The sheet's straight edge is in the picture and is smoothed.
+    /// The sheet's straight edge is smoothed.
     pub edge: bool,
     /// All maps of the side lie on the sheet alike: one texture coordinate serves them.
     pub shared_uv: bool,
@@ -220,7 +220,9 @@ fn side_needs(
         outline.uv_from_side *= drawing.recto_from(name);
         maps.push(MapUse::Outline(outline));
     }
-    terms.edge = !inside_sheet(scene, drawing);
+    // The mesh of a curled sheet ends where the sheet does, and an outline cuts within it; a flat
+    // one reaches further, for the smooth step.
+    terms.edge = !(terms.curved && terms.outline);
     if name == scene.side {
         for &(overlay, opacity) in &scene.overlays {
             if opacity > 0.0 {
@@ -275,15 +277,4 @@ fn relief(
     } else {
         say("no relief: all light is even".into());
     }
-}
-
-/// Whether the picture shows nothing of the sheet's edge: looking straight down, within it.
-fn inside_sheet(scene: &Scene, drawing: &Drawing) -> bool {
-    let camera = &scene.camera;
-    // The picture's height is not known here; no display is taller than it is wide by more.
-    let reach = camera.width_mm * 0.5 * 2f64.sqrt() * 2.0;
-    let margin = (camera.centre_mm)
-        .min(drawing.size_mm - camera.centre_mm)
-        .min_element();
-    camera.tilt.0 == 0.0 && margin > reach
 }

@@ -114,7 +114,7 @@ impl Darkroom {
                 .disable::<bevy::log::LogPlugin>(),
         )
         .add_plugins(StagePlugin {
-            dither: false,
+            display: false,
             anisotropy,
         })
         .add_systems(Startup, without_clusters);

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{
     fresnel::{fresnel_dielectric, fresnel_schlick, normal_reflectance},
-    microfacet::{ALPHA_MIN, MU_MIN, d_ggx, v_smith},
+    microfacet::{ALPHA_MIN, MU_MIN, d_ggx, v_hammon, v_smith},
     table::{Interface, InterfaceMean},
 };
 
@@ -154,14 +154,20 @@ pub fn brdf_lambert(s: &Surface) -> DVec3 {
 /// The draft tier: baked ink under an uncoupled lobe, without the cosine.
 pub fn brdf_draft(s: &Surface, g: &Facing) -> DVec3 {
     let lobe = d_ggx(g.sin2_h, s.alpha)
-        * v_smith(g.mu_i, g.mu_o, s.alpha)
+        * v_hammon(g.mu_i, g.mu_o, s.alpha)
         * fresnel_schlick(g.cos_d, s.f_normal);
     s.albedo / PI + DVec3::splat(s.specular * lobe)
 }
 
+/// The photographed albedo, no higher than a sheet that gives back all light can photograph:
+/// 1/(t̄·capture).
+pub fn albedo_of(s: &Surface, mean: &InterfaceMean) -> DVec3 {
+    s.albedo
+        .min(DVec3::splat(1.0 / (mean.t_mean * mean.capture)))
+}
+
 /// The gallery tier: what the interface reflects, the diffuser underneath does not get, on the
-/// way in and on the way out; without the cosine. No photograph of a sheet that gives back all
-/// light is whiter than 1/(t̄·capture), so the albedo is taken no higher. `at_i`, `at_o` and `mean` are the tabulated
+/// way in and on the way out; without the cosine. `at_i`, `at_o` and `mean` are the tabulated
 /// interface at both cosines and the surface's roughness.
 pub fn brdf_gallery(
     s: &Surface,

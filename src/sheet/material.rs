@@ -44,8 +44,9 @@ pub struct PaperMaterial {
     pub paper: PaperUniform,
     pub terms: Terms,
     pub maps: PaperMaps,
-    /// Half an 8-bit step of noise against banding, for windows; files stay exact.
-    pub dither: bool,
+    /// Drawn into a window: at the display's level, and with half an 8-bit step of noise
+    /// against banding. Files stay exact.
+    pub display: bool,
 }
 
 /// What the pipeline is specialised for.
@@ -53,7 +54,7 @@ pub struct PaperMaterial {
 pub struct PaperKey {
     terms: Terms,
     albedo_map: bool,
-    dither: bool,
+    display: bool,
 }
 
 impl PaperMaterial {
@@ -80,7 +81,7 @@ impl AsBindGroup for PaperMaterial {
         PaperKey {
             terms: self.terms,
             albedo_map: self.maps.albedo.is_some(),
-            dither: self.dither,
+            display: self.display,
         }
     }
 
@@ -174,7 +175,7 @@ impl Material for PaperMaterial {
         let PaperKey {
             terms,
             albedo_map,
-            dither,
+            display,
         } = key.bind_group_data;
         let defs: Vec<ShaderDefVal> = [
             ("TIER_LAMBERT", terms.tier == Tier::Lambert),
@@ -193,7 +194,7 @@ impl Material for PaperMaterial {
             ("ONE_LAMP", terms.one_lamp),
             ("PARALLEL_EYE", terms.parallel_eye),
             ("OVERLAYS", terms.overlays > 0),
-            ("DITHER", dither),
+            ("DISPLAY", display),
         ]
         .into_iter()
         .filter(|(_, needed)| *needed)

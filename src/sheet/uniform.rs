@@ -169,6 +169,7 @@ pub struct PaperUniform {
     pub normal_place: MapPlace,
     pub roughness_place: MapPlace,
     pub outline_place: MapPlace,
+    pub level: Vec4,
     pub interface_table: InterfaceUniform,
     pub lights: [LightUniform; MAX_LAMPS],
     pub overlays: [MapPlace; MAX_OVERLAYS],

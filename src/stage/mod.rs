@@ -85,8 +85,8 @@ pub enum StageSet {
 
 /// Shows [`Shown`].
 pub struct StagePlugin {
-    /// Noise against banding, for windows only.
-    pub dither: bool,
+    /// Draws into a window: at the display's level, with noise against banding.
+    pub display: bool,
     /// Samples along the steepest direction of a tilted map, 1 to 16.
     pub anisotropy: u16,
 }
@@ -95,7 +95,7 @@ impl Plugin for StagePlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins((SheetPlugin, legend::LegendPlugin))
             .insert_resource(Library::new(self.anisotropy))
-            .insert_resource(Arranged::new(self.dither))
+            .insert_resource(Arranged::new(self.display))
             .add_systems(Startup, library::suit_device)
             .configure_sets(Update, (StageSet::Steer, StageSet::Arrange).chain())
             .add_systems(

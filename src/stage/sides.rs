@@ -31,7 +31,7 @@ const BARE_PAPER: [f32; 3] = [0.72, 0.67, 0.57];
 /// What stands on the stage.
 #[derive(Resource)]
 pub struct Arranged {
-    dither: bool,
+    display: bool,
     needs: Option<(Needs, Request)>,
     drawing: Option<usize>,
     sides: Vec<ArrangedSide>,
@@ -46,9 +46,9 @@ struct ArrangedSide {
 }
 
 impl Arranged {
-    pub(super) fn new(dither: bool) -> Self {
+    pub(super) fn new(display: bool) -> Self {
         Self {
-            dither,
+            display,
             needs: None,
             drawing: None,
             sides: Vec::new(),
@@ -141,7 +141,7 @@ pub fn arrange(
                 paper: constants(drawing, side, &codings),
                 terms: side.terms,
                 maps: bound(side, images_of_side),
-                dither: arranged.dither,
+                display: arranged.display,
             });
             let mesh = meshes.add(side_surface(&surface, drawing, side.side).mesh());
             let entity = commands
@@ -263,7 +263,9 @@ fn place(
         table_from_local.inverse(),
         shown.tier == Tier::Draft,
     );
-    uniform.sign_gain = (1.0 / shown.scene.exposure.level) as f32;
+    let level = shown.scene.exposure.level as f32;
+    uniform.sign_gain = 1.0 / level;
+    uniform.level = Vec4::splat(level);
     let overlays: Vec<MapPlace> = side
         .needs
         .maps

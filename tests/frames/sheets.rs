@@ -298,3 +298,19 @@ fn one_input_gives_the_same_picture_twice() {
     assert_eq!(largest_difference(&a, &again), 0.0);
     assert!(largest_difference(&a, &other) > 0.1);
 }
+
+#[test]
+fn a_flat_sheet_ends_where_its_size_says() {
+    let fixture = marked("");
+    let exhibit = fixture.exhibit();
+    let mut room = darkroom(1);
+    // A narrow and high picture of a sheet 40 mm high, at a tenth of a millimetre a pixel.
+    let mut scene = exhibit.scenes[0].clone();
+    scene.camera.width_mm = 2.0;
+    let frame = picture(&mut room, &exhibit, &scene, Tier::Lambert, [20, 500]);
+    let table = f64::from(recto::stage::TABLE);
+    let rows = (0..500)
+        .filter(|&y| (pixel(&frame, 10, y)[1] - table).abs() > 0.02)
+        .count();
+    assert!((399..=401).contains(&rows), "{rows}");
+}
