@@ -1,0 +1,227 @@
+//! Lamps: directions and illuminance.
+
+use super::{interfaces::words, *};
+
+/// One lamp as the shader reads it, the point that it lights, and the sample.
+struct LampCase {
+    light: LightUniform,
+    /// The same, widened.
+    twin: Light,
+    p: Vec3,
+    sample: u32,
+}
+
+impl LampCase {
+    /// Node and weight along both edges of a rectangle's sample in a rule of `grid` points.
+    fn rule(&self, grid: u32) -> [[f64; 2]; 2] {
+        [self.sample % grid, self.sample / grid].map(|i| gauss_legendre(grid, i))
+    }
+}
+
+/// The shader's functions for lamps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lamps {
+    Distant,
+    Punctual,
+    Rectangle,
+}
+
+impl Lamps {
+    fn call(self) -> &'static str {
+        match self {
+            Self::Distant => "light_distant(x.light)",
+            Self::Punctual => "light_punctual(x.light, x.p)",
+            Self::Rectangle => "light_rectangle(x.light, x.p, x.u, x.v)",
+        }
+    }
+}
+
+/// A lamp of any size that `lamps` can be asked about, anywhere that a manifest can put it and
+/// somewhat beyond.
+fn lamp(seeded: &Seeded, lamps: Lamps) -> Light {
+    // Of 1e-3…1e7 lm, over 4π sr, exposed for 1e-3…1e6 lx, with mm² for m².
+    let brightness = seeded.log(1e-3, 1e7) / 4.0 * 1e6 / seeded.log(1e-3, 1e6);
+    let amount = DVec3::new(1.0, seeded.unit(), seeded.log_or_zero(1e-5, 1.0)) * brightness;
+    let mut position = seeded.direction() * seeded.log_or_zero(1e-3, 1e5);
+    if seeded.bits().is_multiple_of(8) {
+        position.z = 0.0;
+    }
+    let axis = seeded.pick(&[
+        -position.normalize_or(DVec3::Z),
+        -DVec3::Z,
+        seeded.direction(),
+    ]);
+    let shape = match (lamps, seeded.bits() % 3) {
+        (Lamps::Rectangle, _) => {
+            let half_u = axis.any_orthonormal_vector();
+            Shape::Rectangle {
+                centre: position,
+                axis,
+                half_u: half_u * seeded.log_or_zero(0.05, 5e3),
+                half_v: axis.cross(half_u) * seeded.log_or_zero(0.05, 5e3),
+                grid: GRIDS.start() + (seeded.bits() % 6) as u32,
+            }
+        }
+        (Lamps::Distant, _) | (_, 0) => Shape::Distant { towards: -axis },
+        (_, 1) => Shape::Point { position },
+        _ => {
+            // Half angles of 0.1° to 89.9°, and beams without a soft edge.
+            let cos_falloff = (1.0 - seeded.log(1.5e-6, 0.998)).min(1.0);
+            let inside = seeded.log_or_zero(1e-7, 1.0);
+            Shape::Spot {
+                position,
+                axis,
+                cos_hotspot: cos_falloff + (1.0 - cos_falloff) * inside,
+                cos_falloff,
+            }
+        }
+    };
+    Light { shape, amount }
+}
+
+fn lamp_cases(lamps: Lamps) -> Vec<LampCase> {
+    let seeded = Seeded::new(3);
+    (0..200_000)
+        .map(|_| {
+            let light = lamp(&seeded, lamps);
+            let narrow = LightUniform::new(&light, false);
+            let p = seeded.direction() * seeded.log_or_zero(1.0, 3e3);
+            let wide = |v: Vec3| v.as_dvec3();
+            let shape = match light.shape {
+                Shape::Distant { .. } => Shape::Distant {
+                    towards: wide(narrow.place),
+                },
+                Shape::Point { .. } => Shape::Point {
+                    position: wide(narrow.place),
+                },
+                Shape::Spot { .. } => Shape::Spot {
+                    position: wide(narrow.place),
+                    axis: wide(narrow.axis),
+                    cos_hotspot: f64::from(narrow.cos_falloff) + 1.0 / f64::from(narrow.beam_scale),
+                    cos_falloff: f64::from(narrow.cos_falloff),
+                },
+                Shape::Rectangle { grid, .. } => Shape::Rectangle {
+                    centre: wide(narrow.place),
+                    axis: wide(narrow.axis),
+                    half_u: wide(narrow.half_edge_u),
+                    half_v: wide(narrow.half_edge_v),
+                    grid,
+                },
+            };
+            // Inside the lamp, at its very place, as well as anywhere.
+            let p = seeded.pick(&[p.as_vec3(), p.as_vec3(), narrow.place, Vec3::ZERO]);
+            LampCase {
+                light: narrow,
+                twin: Light {
+                    shape,
+                    amount: wide(narrow.amount),
+                },
+                p,
+                sample: (seeded.bits() % u64::from(narrow.grid * narrow.grid).max(1)) as u32,
+            }
+        })
+        .collect()
+}
+
+/// How far the illuminance and direction of a case may be from their twins.
+fn lamp_rounding(case: &LampCase, twin: &Incidence) -> (f64, f64) {
+    let wide = |v: Vec3| v.as_dvec3();
+    // Unshaped light: what the beam, or the lamp's own cosine, is a share of.
+    let (towards, places, share, steepness) = match case.twin.shape {
+        Shape::Distant { towards } => (towards, DVec3::ZERO, 1.0, 0.0),
+        Shape::Point { position } => (position - wide(case.p), DVec3::ZERO, 1.0, 0.0),
+        Shape::Spot { position, .. } => {
+            let steepness = f64::from(case.light.beam_scale);
+            (position - wide(case.p), DVec3::ZERO, 1.0, steepness)
+        }
+        Shape::Rectangle {
+            centre,
+            half_u,
+            half_v,
+            grid,
+            ..
+        } => {
+            let [[u, weight_u], [v, weight_v]] = case.rule(grid);
+            let towards = centre + half_u * u + half_v * v - wide(case.p);
+            let share = weight_u * weight_v;
+            let places = centre.abs() + half_u.abs() + half_v.abs() + wide(case.p).abs();
+            (towards, places, share, 1.0)
+        }
+    };
+    let distance2 = towards.length_squared().max(1e-12);
+    // Only a rectangle's place is a sum of more than two: its rounding turns the direction.
+    let turned = UNIT_PRODUCT * places.length() / distance2.sqrt();
+    let unshaped = case.twin.amount.max_element() * share
+        / distance2.max(f64::from(case.light.distance_squared_min));
+    let of_light =
+        unshaped * (UNIT_PRODUCT + turned) * steepness + twin.e.max_element() * 2.0 * turned;
+    (RELATIVE + turned, of_light)
+}
+
+pub fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, String> {
+    let cases = lamp_cases(lamps);
+    let given: Vec<f32> = cases
+        .iter()
+        .flat_map(|case| {
+            let mut words = words(&case.light);
+            words.extend(case.p.to_array());
+            // A vector of two begins at a multiple of eight bytes.
+            words.push(0.0);
+            words.extend(
+                case.rule(case.light.grid.max(*GRIDS.start()))
+                    .concat()
+                    .iter()
+                    .map(|v| *v as f32),
+            );
+            words
+        })
+        .collect();
+    let body = format!(
+        "let x = given[index]; let incidence = {};
+        found[to] = incidence.l.x; found[to + 1u] = incidence.l.y; found[to + 2u] = incidence.l.z;
+        found[to + 3u] = incidence.e.x; found[to + 4u] = incidence.e.y;
+        found[to + 5u] = incidence.e.z;",
+        lamps.call()
+    );
+    let text = format!(
+        "{physics}\nstruct Case {{ light: Light, p: vec3<f32>, u: vec2<f32>, v: vec2<f32> }}\n{}",
+        entry("Case", cases.len(), 6, &body)
+    );
+    let found = gpu.run(&text, &given, cases.len(), 6);
+    let (mut ways, mut lights) = (Vec::new(), Vec::new());
+    for (case, found) in cases.iter().zip(found.chunks(6)) {
+        let twin = case.twin.at(case.p.as_dvec3())[case.sample as usize];
+        let (of_way, of_light) = lamp_rounding(case, &twin);
+        let l = Vec3::from_slice(found).as_dvec3();
+        // A length is not negative; the direction is judged by how far it is off.
+        ways.push(Pair {
+            gpu: (l - twin.l).length() as f32,
+            cpu: 0.0,
+            allowed: of_way,
+        });
+        for k in 0..3 {
+            let mut pair = Pair::new(found[3 + k], twin.e[k], RELATIVE);
+            pair.allowed += of_light;
+            lights.push(pair);
+        }
+    }
+    let case = |i: usize| {
+        let LampCase {
+            light, p, sample, ..
+        } = &cases[i];
+        format!("{light:?} at {p}, sample {sample}")
+    };
+    let of_way = judge(&format!("{lamps:?} lamps: direction"), &ways, case)?;
+    let of_light = judge(&format!("{lamps:?} lamps: illuminance"), &lights, |i| {
+        case(i / 3)
+    })?;
+    Ok(of_way.max(of_light))
+}
+
+#[test]
+fn lamps() {
+    let gpu = Gpu::new();
+    for lamps in [Lamps::Distant, Lamps::Punctual, Lamps::Rectangle] {
+        compare_lamps(&gpu, PAPER_BSDF, lamps).unwrap();
+    }
+}
