@@ -2,9 +2,9 @@
 //!
 //! Geometry is in mm throughout; the resolution only decides how finely it is sampled. The
 //! landscape is a height field seen in perspective, hatched where it turns from the light
-//! ([`landscape`]); the figure on its verso is a distance field treated the same way
-//! ([`figure`]). Strokes ([`stroke`], drawn by a [`hand`]) add their optical depths over a
-//! [`paper`], and [`side`] turns both into maps.
+//! (`landscape`); the figure on its verso is a distance field treated the same way
+//! (`figure`). Strokes (`stroke`, drawn by a `hand`) add their optical depths over a
+//! `paper`, and `side` turns both into maps.
 
 mod chart;
 mod contour;

@@ -1,4 +1,4 @@
-//! From the scene that is shown to entities: loads what [`Needs`] asks for, spawns the sheet's
+//! From the scene that is shown to entities: loads what [`Needs`](crate::needs::Needs) asks for, spawns the sheet's
 //! sides, and keeps their lamps, eye and overlays true to [`Shown`].
 
 pub mod camera;
