@@ -5,7 +5,7 @@
 //! terminal, once for each save.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, HashMap, HashSet},
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex,
@@ -22,9 +22,12 @@ use notify::{
 };
 
 use super::{Arranged, Library, StageSet, Waker, say};
-use crate::manifest::{
-    Fault, Faults,
-    exhibit::{Exhibit, MapFile, Surface},
+use crate::{
+    manifest::{
+        Fault, Faults,
+        exhibit::{Exhibit, MapFile, OverlayKind, Surface},
+    },
+    maps::ColourEncoding,
 };
 
 /// Editors save in several steps, which follow each other faster than this.
@@ -163,11 +166,47 @@ fn stamps(exhibit: &Exhibit) -> Stamps {
         .collect()
 }
 
+/// A version of a map, and how its colours are read; what passed once need not be looked at
+/// again.
+#[derive(PartialEq)]
+struct Check {
+    stamp: Stamp,
+    encodings: HashSet<ColourEncoding>,
+}
+
+/// How the colours of the picture at `path` are encoded, wherever it is one of colours.
+fn encodings(exhibit: &Exhibit, path: &Path) -> HashSet<ColourEncoding> {
+    let drawings = exhibit.drawings.iter();
+    let colours = drawings.flat_map(|drawing| {
+        let sides = [Some(&drawing.recto), drawing.verso.as_ref()];
+        let states = drawing.states.iter();
+        let patches = states.flat_map(|state| [&state.recto, &state.verso]);
+        let overlays = drawing.overlays.iter();
+        let pictures = overlays.filter_map(|overlay| match overlay.kind {
+            OverlayKind::Picture(encoding) => Some((&overlay.file, encoding)),
+            OverlayKind::Categorical(_) | OverlayKind::Continuous { .. } => None,
+        });
+        let albedos = sides.into_iter().flatten().map(|side| &side.albedo);
+        albedos
+            .chain(patches.filter_map(|patch| patch.albedo.as_ref()))
+            .map(|map| (&map.file, map.encoding))
+            .chain(pictures)
+    });
+    colours
+        .filter(|(file, _)| file.path == path)
+        .map(|(_, encoding)| encoding)
+        .collect()
+}
+
 /// Reads one exhibit again and again.
 struct Reader {
     manifest: PathBuf,
-    /// The files of the last sound version.
+    /// The files of the last sound version, or of the first one.
     sound: Stamps,
+    /// Maps whose pixels are sound. Of the first version, only what was shown was ever decoded.
+    verified: HashMap<PathBuf, Check>,
+    /// Of those maps, to be told with the next sound version.
+    warnings: Vec<Fault>,
     /// The last faulty version, which is not told twice.
     faulty: Option<(Stamps, String)>,
 }
@@ -177,13 +216,15 @@ impl Reader {
         Self {
             manifest: exhibit.manifest.clone(),
             sound: stamps(exhibit),
+            verified: HashMap::new(),
+            warnings: Vec::new(),
             faulty: None,
         }
     }
 
     /// A version that is new and sound with its warnings, or `None` if nothing is new.
     fn read(&mut self) -> Result<Option<(Sound, Vec<Fault>)>, Faults> {
-        let (exhibit, warnings) = match Exhibit::read(&self.manifest) {
+        let (exhibit, mut warnings) = match Exhibit::read(&self.manifest) {
             Ok(read) => read,
             Err(faults) => {
                 let stamps = Stamps::from([(self.manifest.clone(), stamp(&self.manifest))]);
@@ -192,10 +233,11 @@ impl Reader {
         };
         let stamps = stamps(&exhibit);
         if stamps == self.sound {
+            // A fault that was undone is news if it comes back.
+            self.faulty = None;
             return Ok(None);
         }
-        let changed = |map: &&MapFile| stamps.get(&map.path) != self.sound.get(&map.path);
-        if let Err(faults) = exhibit.verify(exhibit.maps().filter(changed)) {
+        if let Some(faults) = self.verify(&exhibit, &stamps) {
             return self.told(stamps, faults);
         }
         let maps_changed = stamps
@@ -203,6 +245,7 @@ impl Reader {
             .any(|(path, stamp)| *path != self.manifest && self.sound.get(path) != Some(stamp));
         self.sound = stamps;
         self.faulty = None;
+        warnings.append(&mut self.warnings);
         Ok(Some((
             Sound {
                 exhibit,
@@ -210,6 +253,32 @@ impl Reader {
             },
             warnings,
         )))
+    }
+
+    /// The faults in the pixels of `exhibit`, apart from maps that have passed already.
+    fn verify(&mut self, exhibit: &Exhibit, stamps: &Stamps) -> Option<Faults> {
+        let maps: BTreeMap<&Path, &MapFile> = exhibit
+            .maps()
+            .map(|map| (map.path.as_path(), map))
+            .collect();
+        let mut faults = Vec::new();
+        for (path, map) in maps {
+            let check = Check {
+                stamp: stamps.get(path).copied().flatten(),
+                encodings: encodings(exhibit, path),
+            };
+            if self.verified.get(path) == Some(&check) {
+                continue;
+            }
+            match exhibit.verify([map]) {
+                Ok(warnings) => {
+                    self.verified.insert(path.into(), check);
+                    self.warnings.extend(warnings);
+                }
+                Err(found) => faults.extend(found),
+            }
+        }
+        Faults::new(faults)
     }
 
     fn told<T>(&mut self, stamps: Stamps, faults: Faults) -> Result<Option<T>, Faults> {
@@ -268,5 +337,98 @@ mod tests {
         std::fs::write(&picture, &bytes).expect("the file is written");
         let (read, _) = reader.read().expect("it is sound").expect("it is new");
         assert!(read.maps_changed);
+    }
+
+    /// Two drawings, the second with this albedo.
+    fn two_drawings(second: &str) -> String {
+        format!(
+            "[exhibit]\ntitle = \"Two\"\n\
+             [[drawing]]\nid = \"one\"\nsize_mm = [20.0, 20.0]\n\
+             recto.albedo = \"one.png\"\n\
+             [[drawing]]\nid = \"two\"\nsize_mm = [20.0, 20.0]\n\
+             recto.albedo = {second}\n"
+        )
+    }
+
+    fn draw(path: &Path) {
+        crate::maps::encode::save_png_rgb8(path, 8, 8, &[[200; 3]; 64], None)
+            .expect("the picture is written");
+    }
+
+    fn draw_with_broken_profile(path: &Path) {
+        let mut info = png::Info::with_size(8, 8);
+        info.color_type = png::ColorType::Rgb;
+        info.bit_depth = png::BitDepth::Eight;
+        info.icc_profile = Some(b"no profile".into());
+        let file = std::fs::File::create(path).expect("the file is created");
+        png::Encoder::with_info(file, info)
+            .and_then(|encoder| encoder.write_header())
+            .and_then(|mut writer| writer.write_image_data(&[200; 3 * 64]))
+            .expect("the picture is written");
+    }
+
+    #[test]
+    fn a_map_that_was_never_decoded_is_looked_at_before_it_comes_out() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let manifest = folder.path().join("exhibit.toml");
+        let second = folder.path().join("two.png");
+        draw(&folder.path().join("one.png"));
+        draw(&second);
+        let whole = std::fs::read(&second).expect("a picture");
+        std::fs::write(&second, &whole[..whole.len() - 20]).expect("the file is written");
+        let text = two_drawings("\"two.png\"");
+        save(&manifest, &text);
+        let (exhibit, _) = Exhibit::read(folder.path()).expect("its headers are sound");
+        let mut reader = Reader::new(&exhibit);
+
+        save(&manifest, &text.replace("\"Two\"", "\"Second\""));
+        assert!(reader.read().is_err(), "half a picture is a fault");
+        std::fs::write(&second, &whole).expect("the file is written");
+        assert!(reader.read().expect("it is sound").is_some());
+    }
+
+    #[test]
+    fn a_map_that_is_read_in_another_way_is_looked_at_again() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let manifest = folder.path().join("exhibit.toml");
+        draw(&folder.path().join("one.png"));
+        draw_with_broken_profile(&folder.path().join("two.png"));
+        let text = two_drawings("{ file = \"two.png\", encoding = \"srgb\" }");
+        save(&manifest, &text);
+        let (exhibit, _) = Exhibit::read(folder.path()).expect("it is sound");
+        let mut reader = Reader::new(&exhibit);
+        save(&manifest, &text.replace("\"Two\"", "\"Second\""));
+        assert!(reader.read().expect("it is sound").is_some());
+
+        save(&manifest, &two_drawings("\"two.png\""));
+        assert!(reader.read().is_err(), "its profile is broken");
+    }
+
+    #[test]
+    fn a_fault_that_comes_back_is_told_again() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let manifest = folder.path().join("exhibit.toml");
+        for picture in ["one.png", "two.png"] {
+            draw(&folder.path().join(picture));
+        }
+        let text = two_drawings("\"two.png\"");
+        let at = |text: &str, time: SystemTime| {
+            save(&manifest, text);
+            let file = std::fs::File::options().write(true).open(&manifest);
+            let file = file.expect("the manifest opens");
+            file.set_modified(time).expect("its time is set");
+        };
+        let sound = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000_000);
+        let faulty = sound + Duration::from_secs(1);
+        at(&text, sound);
+        let (exhibit, _) = Exhibit::read(folder.path()).expect("it is sound");
+        let mut reader = Reader::new(&exhibit);
+        for _ in 0..2 {
+            at(&text.replace("size_mm", "size_nm"), faulty);
+            assert!(reader.read().is_err());
+            assert!(reader.read().expect("it is told already").is_none());
+            at(&text, sound);
+            assert!(reader.read().expect("it is sound").is_none());
+        }
     }
 }

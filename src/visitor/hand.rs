@@ -20,6 +20,7 @@ use crate::{
     },
     optics::tier::Tier,
     stage::Shown,
+    units::Lux,
 };
 
 /// A hand turns the sheet no further, in degrees: its other side stays hidden.
@@ -61,12 +62,33 @@ pub struct Picture {
     pub measured: bool,
 }
 
+/// What could be shown, also of an earlier version of the exhibit.
+#[derive(Clone, Debug)]
+struct Good {
+    exhibit: Arc<Exhibit>,
+    scene: usize,
+    view: View,
+}
+
+/// What became of a wish that cannot be shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Retreat {
+    /// Nothing could be shown yet.
+    Nowhere,
+    /// Back to what could be shown.
+    Back,
+    /// It was what could be shown before, and no longer can be.
+    Stuck,
+}
+
 /// What the hand holds.
 #[derive(Resource, Debug)]
 pub struct Hand {
     exhibit: Arc<Exhibit>,
     /// The same with the lamp where the hand put it.
     lit: Arc<Exhibit>,
+    /// What the scene as written is exposed for, while its lamp is elsewhere.
+    exposed_for: Option<Lux>,
     scene: usize,
     view: View,
     tier: Tier,
@@ -88,8 +110,8 @@ pub struct Hand {
     flip: Option<f64>,
     /// Both sides are loaded and stay so.
     both_sides: bool,
-    /// The last scene and view that could be shown.
-    good: Option<(usize, View)>,
+    /// What could be shown last.
+    good: Option<Good>,
     /// Scenes that could not be shown.
     refused: BTreeSet<usize>,
 }
@@ -106,6 +128,7 @@ impl Hand {
         let view = View::of(&exhibit, &exhibit.scenes[scene]);
         Self {
             lit: exhibit.clone(),
+            exposed_for: None,
             exhibit,
             scene,
             view,
@@ -142,7 +165,6 @@ impl Hand {
         self.flip = None;
         self.scene = scene;
         self.exhibit = exhibit;
-        self.good = None;
         self.refused.clear();
         self.relight();
     }
@@ -264,6 +286,10 @@ impl Hand {
         scene.camera = self.camera();
         scene.side = self.view.side;
         scene.state = self.view.state;
+        // A lamp that is lowered darkens the sheet, as before the eyes of a visitor.
+        if self.exposed_for.is_some() {
+            scene.exposure.illuminance = self.exposed_for;
+        }
         if self.flip.is_some() {
             // The place under view stays the same place of the sheet while it goes round.
             let there = other_side(scene.camera.centre_mm, drawing.size_mm, drawing.flip);
@@ -314,23 +340,35 @@ impl Hand {
     /// What is shown now could be shown.
     pub fn keep(&mut self) {
         if self.flip.is_none() {
-            self.good = Some((self.scene, self.view.clone()));
+            self.good = Some(Good {
+                exhibit: self.exhibit.clone(),
+                scene: self.scene,
+                view: self.view.clone(),
+            });
         }
     }
 
-    /// What was asked for cannot be shown: back to what could. False if nothing could yet.
-    pub fn retreat(&mut self) -> bool {
-        let Some((scene, view)) = self.good.clone() else {
-            return false;
+    /// What was asked for cannot be shown: back to what could, be it of an earlier version.
+    pub fn retreat(&mut self) -> Retreat {
+        let Some(good) = self.good.clone() else {
+            return Retreat::Nowhere;
         };
-        if scene != self.scene {
+        let same_version = Arc::ptr_eq(&good.exhibit, &self.exhibit);
+        let same_scene = same_version && good.scene == self.scene;
+        if same_scene && good.view.shows_as(&self.view) && self.flip.is_none() {
+            return Retreat::Stuck;
+        }
+        if !same_version {
+            self.refused.clear();
+        } else if good.scene != self.scene {
             self.refused.insert(self.scene);
         }
-        self.scene = scene;
-        self.view = view;
+        self.exhibit = good.exhibit;
+        self.scene = good.scene;
+        self.view = good.view;
         self.still();
         self.relight();
-        true
+        Retreat::Back
     }
 
     fn written(&self) -> &Scene {
@@ -369,6 +407,13 @@ impl Hand {
         let fit = |camera: Camera| camera.fitted(self.drawing().size_mm, self.picture.aspect);
         let whole = fit(Camera::whole_sheet(self.drawing().size_mm));
         whole.width_mm.max(fit(self.written().camera).width_mm)
+    }
+
+    /// The nearest width in mm that the picture may have. A tiny sheet is not shown any larger
+    /// than whole.
+    fn within_reach(&self, width_mm: f64) -> f64 {
+        let widest = self.widest();
+        width_mm.clamp(NARROWEST_MM.min(widest), widest)
     }
 
     /// Right and up in the picture, as right and up on the table.
@@ -422,7 +467,7 @@ impl Hand {
     fn set_camera(&mut self, mut camera: Camera) {
         let size = self.drawing().size_mm;
         let widest = self.widest();
-        camera.width_mm = camera.width_mm.clamp(NARROWEST_MM.min(widest), widest);
+        camera.width_mm = self.within_reach(camera.width_mm);
         // The picture stays within the widest one, which is centred.
         let spare = (widest - camera.width_mm) / 2.0;
         let spare = DVec2::new(spare, spare / self.picture.aspect);
@@ -455,7 +500,7 @@ impl Hand {
     }
 
     fn zoom_to(&mut self, width_mm: f64, at: DVec2) {
-        let target = width_mm.clamp(NARROWEST_MM, self.widest());
+        let target = self.within_reach(width_mm);
         if self.calm {
             self.set_width(target, at);
         } else {
@@ -465,7 +510,7 @@ impl Hand {
 
     fn true_size(&mut self, at: DVec2) {
         let width = self.zoom.map_or(self.camera().width_mm, |(width, _)| width);
-        let target = self.picture.width_mm.clamp(NARROWEST_MM, self.widest());
+        let target = self.within_reach(self.picture.width_mm);
         if (width / target - 1.0).abs() < 2.0 * ARRIVED {
             let back = self.before_true_size.take().unwrap_or(self.widest());
             self.zoom_to(back, at);
@@ -526,5 +571,7 @@ impl Hand {
 
     fn relight(&mut self) {
         self.lit = self.view.lit(&self.exhibit, self.written());
+        self.exposed_for = (!Arc::ptr_eq(&self.lit, &self.exhibit))
+            .then(|| Lux(self.exhibit.lighting(self.written()).reference_lux));
     }
 }

@@ -105,6 +105,12 @@ impl View {
         view
     }
 
+    /// Whether `other` shows the same of the sheet, wherever eye and lamp are: these need no
+    /// maps.
+    pub fn shows_as(&self, other: &Self) -> bool {
+        (self.side, self.state) == (other.side, other.state) && self.layers == other.layers
+    }
+
     /// The overlays that lie on `side`, from the lowest.
     pub fn overlays(&self, drawing: &Drawing, side: SideName) -> Vec<(usize, f64)> {
         self.layers

@@ -29,7 +29,7 @@ use wgpu::DeviceType;
 use super::{
     NoDisplay, ShowOptions,
     caption::{self, Texts},
-    hand::{Hand, Picture},
+    hand::{Hand, Picture, Retreat},
     input::Devices,
     intent::Intent,
 };
@@ -101,7 +101,7 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         .add_message::<Intent>()
         .add_plugins((
             StagePlugin {
-                dither: true,
+                display: true,
                 anisotropy: ANISOTROPY,
             },
             ReloadPlugin { exhibit },
@@ -182,9 +182,9 @@ fn mode(fullscreen: bool) -> WindowMode {
 
 /// A processor that stands in for a graphics device takes four times as long for a frame with
 /// anisotropic filtering.
-fn suit_device(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
+fn suit_device(adapter: Res<RenderAdapterInfo>, mut library: ResMut<Library>) {
     if adapter.device_type == DeviceType::Cpu {
-        commands.insert_resource(Library::new(1));
+        library.set_anisotropy(1);
     }
 }
 
@@ -199,6 +199,13 @@ fn outlive_display(display: On<Despawn, Monitor>, mut displays: Query<&mut HasWi
     }
 }
 
+/// Names the window after the exhibit.
+fn entitle(mut windows: Query<&mut Window, With<PrimaryWindow>>, exhibit: &Exhibit) {
+    for mut window in &mut windows {
+        window.title = title(exhibit);
+    }
+}
+
 /// The window's, from the exhibit's.
 fn title(exhibit: &Exhibit) -> String {
     let title = exhibit.text(&exhibit.title, "").unwrap_or_default();
@@ -208,13 +215,11 @@ fn title(exhibit: &Exhibit) -> String {
 fn take_in_reread(
     mut reread: MessageReader<Reread>,
     mut hand: ResMut<Hand>,
-    mut windows: Query<&mut Window, With<PrimaryWindow>>,
+    windows: Query<&mut Window, With<PrimaryWindow>>,
 ) {
     if let Some(Reread(exhibit)) = reread.read().last() {
         hand.replace(exhibit.clone());
-        for mut window in &mut windows {
-            window.title = title(exhibit);
-        }
+        entitle(windows, exhibit);
     }
 }
 
@@ -327,15 +332,17 @@ fn follow_wishes(
 }
 
 /// Where maps cannot be decoded, the curator is told and the visitor sees what was there
-/// before; if nothing was, the exhibit is at fault.
+/// before. Its files may be at fault by now as well, and then the last picture stays; if there
+/// was none, the exhibit is at fault.
 fn fall_back(
-    mut hand: ResMut<Hand>,
-    mut shown: ResMut<Shown>,
+    (mut hand, mut shown): (ResMut<Hand>, ResMut<Shown>),
     arranged: Res<Arranged>,
-    library: Res<Library>,
-    mut told: Local<usize>,
+    mut library: ResMut<Library>,
+    mut pace: ResMut<Pace>,
+    windows: Query<&mut Window, With<PrimaryWindow>>,
     mut exit: MessageWriter<AppExit>,
 ) {
+    pace.stuck = false;
     if arranged.is_settled() {
         hand.bypass_change_detection().keep();
         return;
@@ -343,20 +350,17 @@ fn fall_back(
     if library.is_busy() {
         return;
     }
-    // Reading the exhibit again empties the list.
-    let from = if *told > library.faults.len() {
-        0
-    } else {
-        *told
-    };
-    for (path, error) in &library.faults[from..] {
-        say(shown.exhibit.map_fault(path, error));
+    // Taken out of the list, none of them is told twice.
+    for (path, error) in std::mem::take(&mut library.bypass_change_detection().faults) {
+        say(shown.exhibit.map_fault(&path, &error));
     }
-    *told = library.faults.len();
-    if hand.retreat() {
-        *shown = hand.shown();
-    } else {
-        exit.write(AppExit::from_code(1));
+    match hand.bypass_change_detection().retreat() {
+        Retreat::Back => {
+            *shown = hand.shown();
+            entitle(windows, &shown.exhibit);
+        }
+        Retreat::Stuck => pace.stuck = true,
+        Retreat::Nowhere => drop(exit.write(AppExit::from_code(1))),
     }
 }
 
@@ -371,6 +375,8 @@ struct Pace {
     moved: Duration,
     /// Something has been shown.
     begun: bool,
+    /// What is wanted cannot be shown until a file is saved: there is nothing to wait for.
+    stuck: bool,
 }
 
 /// Draws on while something moves or is on its way, and then not at all.
@@ -389,7 +395,7 @@ fn rest(
     }
     pace.begun |= settled;
     pace.left = pace.left.saturating_sub(1);
-    if !settled {
+    if !settled && !pace.stuck {
         pace.left = SETTLING_FRAMES;
     } else if shown.is_changed() || texts.is_changed() || hand.is_moving() {
         pace.left = pace.left.max(CHANGE_FRAMES);

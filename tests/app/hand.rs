@@ -10,7 +10,10 @@ use recto::{
     },
     optics::tier::Tier,
     stage::Shown,
-    visitor::{Hand, Intent, hand::Picture},
+    visitor::{
+        Hand, Intent,
+        hand::{Picture, Retreat},
+    },
 };
 
 const PICTURE: Picture = Picture {
@@ -267,12 +270,91 @@ fn a_new_version_keeps_the_view_and_takes_what_the_hand_left_alone() {
 #[test]
 fn a_scene_that_cannot_be_shown_is_passed_over() {
     let (_folder, mut hand) = hand("whole");
-    assert!(!hand.retreat(), "nothing was shown yet");
+    assert_eq!(hand.retreat(), Retreat::Nowhere, "nothing was shown yet");
     hand.keep();
     hand.apply(Intent::StepScene(1));
     assert_eq!(hand.shown().scene.id, "detail");
-    assert!(hand.retreat());
+    assert_eq!(hand.retreat(), Retreat::Back);
     assert_eq!(hand.shown().scene.id, "whole");
     hand.apply(Intent::StepScene(1));
     assert_eq!(hand.shown().scene.id, "page");
+}
+
+/// The exhibit of `folder` after a save of `text`.
+fn save(folder: &tempfile::TempDir, text: &str) -> Arc<Exhibit> {
+    fs::write(folder.path().join("exhibit.toml"), text).expect("the manifest is written");
+    let (exhibit, _) = Exhibit::read(folder.path()).expect("it is sound");
+    Arc::new(exhibit)
+}
+
+#[test]
+fn a_new_version_that_cannot_be_shown_gives_way_to_the_one_before() {
+    let (folder, mut hand) = hand("detail");
+    hand.apply(Intent::RaiseLamp(60.0));
+    hand.keep();
+    let before = hand.shown();
+    // Two saves in a row, neither of which can be shown.
+    for width in ["50", "40"] {
+        let text = super::MANIFEST.replace("width_mm = 60", &format!("width_mm = {width}"));
+        hand.replace(save(&folder, &text));
+        assert_ne!(hand.shown().scene, before.scene);
+    }
+    assert_eq!(hand.retreat(), Retreat::Back);
+    let after = hand.shown();
+    assert_eq!(after.scene, before.scene);
+    assert_eq!(*after.exhibit, *before.exhibit);
+    // Its files may be damaged as well: the hand keeps what needs none.
+    drag(&mut hand, DVec2::ZERO, DVec2::new(0.1, 0.0));
+    let moved = hand.shown().scene.camera;
+    assert_eq!(hand.retreat(), Retreat::Stuck);
+    assert_eq!(hand.shown().scene.camera, moved);
+    hand.apply(Intent::StepState(1));
+    assert_eq!(hand.retreat(), Retreat::Back);
+    assert_eq!(hand.shown().scene.state, None);
+    // The next save is shown.
+    hand.replace(save(&folder, super::MANIFEST));
+    hand.keep();
+    hand.apply(Intent::StepScene(1));
+    assert_eq!(hand.retreat(), Retreat::Back);
+    assert_eq!(hand.shown().scene.id, "detail");
+}
+
+#[test]
+fn a_tiny_sheet_can_be_zoomed() {
+    let (folder, _) = exhibit();
+    let text = super::MANIFEST.replace("[300.0, 200.0]", "[1.0, 1.0]");
+    let text = text.replace("centre_mm = [100, 80], width_mm = 60", "");
+    let mut hand = Hand::new(save(&folder, &text), 0, Tier::Draft, PICTURE, false);
+    let whole = hand.shown().scene.camera.width_mm;
+    let at = DVec2::new(0.3, 0.3);
+    for intent in [
+        Intent::Zoom { at, factor: 3.0 },
+        Intent::TrueSize { at },
+        Intent::TrueSize { at },
+        Intent::Zoom { at, factor: 0.1 },
+    ] {
+        hand.apply(intent);
+        settle(&mut hand);
+        assert_eq!(hand.shown().scene.camera.width_mm, whole);
+    }
+}
+
+#[test]
+fn a_lowered_lamp_darkens_the_sheet() {
+    let (_folder, mut hand) = hand("whole");
+    let lux = |hand: &Hand| {
+        let shown = hand.shown();
+        let lighting = shown.exhibit.lighting(&shown.scene);
+        let [light] = lighting.lights[..] else {
+            panic!("one lamp");
+        };
+        light.illuminance(DVec3::ZERO, DVec3::Z).y
+    };
+    let written = lux(&hand);
+    hand.apply(Intent::RaiseLamp(5.0));
+    let share = lux(&hand) / written;
+    let expected = 5f64.to_radians().sin() / 25f64.to_radians().sin();
+    assert!((share - expected).abs() < 1e-9, "{share} {expected}");
+    hand.apply(Intent::Home);
+    assert_eq!(lux(&hand), written);
 }

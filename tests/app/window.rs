@@ -163,6 +163,69 @@ fn the_window_rests_reloads_and_outlives_a_faulty_save() {
     assert_eq!(words.matches("size_mn").count(), 2, "told once: {words}");
 }
 
+/// Damages the pixels of a picture whose length and time stay, so that nothing notices before
+/// it is decoded again; a picture that is written twice in a row does the same by chance.
+fn damage_unseen(path: &Path) {
+    let time = fs::metadata(path).and_then(|data| data.modified());
+    let mut bytes = fs::read(path).expect("a picture");
+    let data = bytes.windows(4).position(|name| name == b"IDAT");
+    bytes[data.expect("its pixels") + 4..].fill(0);
+    fs::write(path, bytes).expect("the picture is written");
+    let file = fs::File::options().write(true).open(path);
+    file.and_then(|file| file.set_modified(time?))
+        .expect("its time is set back");
+}
+
+#[test]
+fn a_damaged_map_leaves_the_last_picture_until_it_is_mended() {
+    if std::env::var_os(SKIP).is_some() {
+        eprintln!("skipped: {SKIP} is set");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    super::write_exhibit(folder.path());
+    let [paper, other] = ["paper.png", "other.png"].map(|name| folder.path().join(name));
+    super::draw_paper(&other, 200);
+    let manifest = folder.path().join("exhibit.toml");
+    let (sheet, page) = super::MANIFEST
+        .split_once("id = \"page\"")
+        .expect("two drawings");
+    let page = page.replace("paper.png", "other.png");
+    let text = format!("{sheet}id = \"page\"{page}");
+    fs::write(&manifest, &text).expect("the manifest is written");
+    // A drawing that is not shown is damaged from the start.
+    let whole = fs::read(&other).expect("a picture");
+    damage_unseen(&other);
+    let logs = tempfile::tempdir().expect("a temporary folder");
+    let (_server, display) = x_server();
+    let mut window = Window::open(&display, folder.path(), logs.path().join("frames"));
+    let settled = window.settle_after(0);
+
+    // The first scene moves on to it.
+    let moved = text.replacen("drawing = \"sheet\"", "drawing = \"page\"", 1);
+    fs::write(&manifest, moved).expect("the manifest is written");
+    thread::sleep(SETTLED);
+    assert_eq!(window.frames(), settled, "the last good exhibit stays");
+
+    fs::write(&other, whole).expect("the picture is written");
+    fs::write(&manifest, &text).expect("the manifest is written");
+    let settled = window.settle_after(settled);
+
+    // The map on screen is read again, and neither version of the exhibit can be shown.
+    damage_unseen(&paper);
+    super::draw_paper(&other, 90);
+    let stuck = window.settle_after(settled);
+
+    super::draw_paper(&paper, 150);
+    window.settle_after(stuck);
+
+    let words = window.close();
+    for name in ["other.png", "paper.png"] {
+        let told = format!("found \"{name}\", which is damaged");
+        assert_eq!(words.matches(&told).count(), 1, "{name}, once: {words}");
+    }
+}
+
 #[test]
 fn without_a_display_there_is_advice() {
     let folder = tempfile::tempdir().expect("a temporary folder");
