@@ -6,6 +6,13 @@ set -eu
 : "${CARGO_TARGET_DIR:=${XDG_CACHE_HOME:-$HOME/.cache}/recto/target}"
 export CARGO_TARGET_DIR
 
+# Mesa complains where there is none.
+if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
+    XDG_RUNTIME_DIR=${XDG_CACHE_HOME:-$HOME/.cache}/recto/runtime
+    mkdir -p -m 700 "$XDG_RUNTIME_DIR"
+    export XDG_RUNTIME_DIR
+fi
+
 # Whether the dynamic linker knows a library. ldconfig may be outside a user's PATH.
 has_library() {
     PATH="$PATH:/usr/sbin:/sbin" ldconfig -p 2>/dev/null | grep -q "$1" && return
@@ -60,11 +67,18 @@ install_packages() {
         sudo=sudo
     fi
     echo "setup: missing here and installed now with apt-get: $packages" >&2
-    $sudo apt-get update -qq
     # Each package is a word of its own.
     # shellcheck disable=SC2086
-    $sudo env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y -qq --no-install-recommends $packages >/dev/null
+    if $sudo apt-get update -qq &&
+        $sudo env DEBIAN_FRONTEND=noninteractive \
+            apt-get install -y -qq --no-install-recommends $packages >/dev/null; then
+        return 0
+    fi
+    echo "setup: apt-get failed; please install later: $packages" >&2
+    # Nothing can be built or rendered without these.
+    case " $packages" in
+    *" build-essential "* | *" libvulkan1 "* | *" mesa-vulkan-drivers "*) exit 1 ;;
+    esac
 }
 
 # Writes the maps of the sample exhibits unless the last one to be written is there.

@@ -26,7 +26,10 @@ const MAY_IMPORT: [(&str, &[&str]); 14] = [
         ],
     ),
     ("device", &["bevy"]),
-    ("shot", &["bevy", "device", "manifest", "maps", "stage", "colour"]),
+    (
+        "shot",
+        &["bevy", "device", "manifest", "maps", "stage", "colour"],
+    ),
     (
         "visitor",
         &[

@@ -35,9 +35,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn report(arguments: &Arguments) -> Result<Report, Faults> {
-    let (exhibit, warnings) = Exhibit::read(&arguments.exhibit)?;
+    let (exhibit, mut warnings) = Exhibit::read(&arguments.exhibit)?;
     // Those that no scene needs today are still part of the exhibit.
-    exhibit.verify(exhibit.maps())?;
+    warnings.extend(exhibit.verify(exhibit.maps())?);
     super::warn(&warnings);
     Ok(Report::new(&exhibit, warnings))
 }

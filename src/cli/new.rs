@@ -30,7 +30,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             ))
         })?,
     };
-    let manifest = manifest::create(&arguments.dir, &arguments.albedo, size_mm)?;
+    let (manifest, warnings) = manifest::create(&arguments.dir, &arguments.albedo, size_mm)?;
+    super::warn(&warnings);
     output::result(manifest.display())?;
     output::say(format_args!(
         "Look at it with `recto show {0}`; after changes, `recto check {0}` names every fault.",

@@ -41,7 +41,8 @@ pub fn can_write_file(path: &Path) -> Result<(), Failure> {
 /// Finds out whether the folder `path` could be made, if it is absent, and written to.
 pub fn can_write_folder(path: &Path) -> Result<(), Failure> {
     let mut existing = path;
-    while !existing.exists() {
+    // The current folder may have been deleted, and nothing is above it by this name.
+    while !existing.exists() && existing != Path::new(".") {
         existing = match existing.parent() {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),

@@ -202,7 +202,8 @@ fn samples(scene: &Scene) -> u16 {
     }
 }
 
-/// Decodes the maps that the scenes need, which finds damaged ones before anything is rendered.
+/// Decodes the maps that the scenes need, which finds damaged ones before anything is rendered,
+/// and says its warnings.
 fn verify(exhibit: &Exhibit, scenes: &[Scene], tier: Tier) -> Result<(), Failure> {
     let needs: Vec<Needs> = scenes
         .iter()
@@ -210,7 +211,8 @@ fn verify(exhibit: &Exhibit, scenes: &[Scene], tier: Tier) -> Result<(), Failure
         .collect();
     let sides = needs.iter().flat_map(|needs| &needs.sides);
     let maps = sides.flat_map(|side| &side.maps);
-    Ok(exhibit.verify(maps.map(MapUse::file))?)
+    super::warn(&exhibit.verify(maps.map(MapUse::file))?);
+    Ok(())
 }
 
 /// A map that cannot be decoded is a fault at the place in the manifest that names it.

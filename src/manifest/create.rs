@@ -1,13 +1,16 @@
 //! A starting exhibit from one picture.
 
 use std::{
-    fs, io,
-    io::Write,
+    fs::{self, File},
+    io::{self, BufRead, BufReader, Write},
     path::{Path, PathBuf},
 };
 
-use super::{Exhibit, MANIFEST, fault::Faults};
-use crate::maps::{self, MapError};
+use super::{
+    Exhibit, MANIFEST,
+    fault::{Fault, Faults},
+};
+use crate::maps::{self, MapError, encode::write_whole};
 
 /// Why no exhibit could be started.
 #[derive(Debug, thiserror::Error)]
@@ -18,27 +21,37 @@ pub enum CreateError {
         .0.display()
     )]
     Exists(PathBuf),
-    /// The picture is none.
+    /// Another file has the picture's name already.
+    #[error(
+        "{}: is another file than the picture; choose another folder or rename one of the two",
+        .0.display()
+    )]
+    Occupied(PathBuf),
+    /// The picture is none, or it or the manifest cannot be written.
     #[error(transparent)]
-    Picture(#[from] MapError),
+    File(#[from] MapError),
     /// The picture has no file name that a manifest could hold.
     #[error("{}: has no plain file name; rename it", .0.display())]
     Name(PathBuf),
-    /// Nothing can be written there.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write { path: PathBuf, source: io::Error },
+    /// The folder cannot be made.
+    #[error("{}: cannot be made: {source}", path.display())]
+    Folder { path: PathBuf, source: io::Error },
     /// What was asked for cannot be an exhibit, such as a sheet without width.
     #[error(transparent)]
     Faults(#[from] Faults),
 }
 
 /// Makes a folder with a copy of the picture `albedo` and a manifest that shows it as a sheet of
-/// `size_mm`. Returns the manifest's path.
+/// `size_mm`. Returns the manifest's path and its warnings.
 ///
 /// # Errors
-/// If there is a manifest already, if the picture or size cannot be used, or if nothing can be
-/// written; then no manifest is left behind.
-pub fn create(folder: &Path, albedo: &Path, size_mm: [f64; 2]) -> Result<PathBuf, CreateError> {
+/// If there is a manifest already or another file by the picture's name, if the picture or size
+/// cannot be used, or if nothing can be written; then no manifest is left behind.
+pub fn create(
+    folder: &Path,
+    albedo: &Path,
+    size_mm: [f64; 2],
+) -> Result<(PathBuf, Vec<Fault>), CreateError> {
     let manifest = folder.join(MANIFEST);
     if manifest.exists() {
         return Err(CreateError::Exists(manifest));
@@ -48,22 +61,51 @@ pub fn create(folder: &Path, albedo: &Path, size_mm: [f64; 2]) -> Result<PathBuf
     let name = name.ok_or_else(|| CreateError::Name(albedo.to_owned()))?;
     let text = starting_text(name, size_mm);
     super::check_shape(&text)?;
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        |source| CreateError::Write { path, source }
-    };
-    fs::create_dir_all(folder).map_err(failed(folder))?;
+    fs::create_dir_all(folder).map_err(|source| CreateError::Folder {
+        path: folder.to_owned(),
+        source,
+    })?;
     let copy = folder.join(name);
-    // Copying a file onto itself would empty it.
     if !copy.exists() {
-        fs::copy(albedo, &copy).map_err(failed(&copy))?;
+        let mut picture = open(albedo)?;
+        write_whole(&copy, |file| io::copy(&mut picture, file).map(|_| ()))?;
+    } else if !same_content(albedo, &copy)? {
+        return Err(CreateError::Occupied(copy));
     }
-    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(failed(&manifest))?;
-    file.write_all(text.as_bytes()).map_err(failed(&manifest))?;
-    Exhibit::parse(&manifest, folder, &text)?;
-    file.persist_noclobber(&manifest)
-        .map_err(|error| failed(&manifest)(error.error))?;
-    Ok(manifest)
+    let (_, warnings) = Exhibit::parse(&manifest, folder, &text)?;
+    write_whole(&manifest, |file| file.write_all(text.as_bytes()))?;
+    Ok((manifest, warnings))
+}
+
+fn open(path: &Path) -> Result<BufReader<File>, MapError> {
+    File::open(path)
+        .map(BufReader::new)
+        .map_err(|reason| unreadable(path, reason))
+}
+
+fn unreadable(path: &Path, reason: io::Error) -> MapError {
+    MapError::Read {
+        path: path.to_owned(),
+        reason,
+    }
+}
+
+/// Whether two files hold the same bytes.
+fn same_content(one: &Path, other: &Path) -> Result<bool, MapError> {
+    let (mut a, mut b) = (open(one)?, open(other)?);
+    loop {
+        let left = a.fill_buf().map_err(|reason| unreadable(one, reason))?;
+        let right = b.fill_buf().map_err(|reason| unreadable(other, reason))?;
+        let both = left.len().min(right.len());
+        if both == 0 {
+            return Ok(left.is_empty() && right.is_empty());
+        }
+        if left[..both] != right[..both] {
+            return Ok(false);
+        }
+        a.consume(both);
+        b.consume(both);
+    }
 }
 
 /// The manifest with its explanations.

@@ -9,7 +9,7 @@
 //! | plain data → [`Exhibit`], with files, references and units | `validate` |
 //! | what is wrong, where, and what to do | [`Fault`], [`Faults`] |
 //! | a starting manifest from one picture | [`create`] |
-//! | a lamp or camera in one line | `spec` |
+//! | a lamp or camera in one line | `overrides::spec` |
 //! | a scene changed by options of a command | [`overrides`] |
 
 mod create;

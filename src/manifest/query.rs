@@ -6,12 +6,12 @@ use glam::DVec2;
 
 use super::{
     decode::Pattern,
-    document::{self, Document},
+    document::{self, Document, Words},
     exhibit::{
-        Camera, Drawing, Exhibit, HeightMap, MapFile, OverlayKind, Scene, Side, SideName,
-        SidePatch, State, Surface, Wording,
+        Camera, Drawing, Exhibit, HeightMap, MapFile, MediaContent, OverlayKind, Scene, Side,
+        SideName, SidePatch, State, Surface, Wording,
     },
-    fault::{Fault, Faults, Severity},
+    fault::{Fault, Faults, Severity, quote},
     raw::values::FilePath,
     validate::{PICTURE, map_words},
 };
@@ -57,46 +57,80 @@ impl Exhibit {
     }
 
     /// Decodes whole pictures, which finds truncated and damaged ones. Reading an exhibit looks
-    /// at their headers only.
+    /// at their headers only. Returns warnings of pixels that will not be shown as they are.
     ///
     /// # Errors
     /// All faults, each at the place in the manifest that names the picture.
-    pub fn verify<'m>(&self, maps: impl IntoIterator<Item = &'m MapFile>) -> Result<(), Faults> {
+    pub fn verify<'m>(
+        &self,
+        maps: impl IntoIterator<Item = &'m MapFile>,
+    ) -> Result<Vec<Fault>, Faults> {
         let mut paths: Vec<&Path> = maps.into_iter().map(|map| map.path.as_path()).collect();
         paths.sort();
         paths.dedup();
-        let faults = paths.into_iter().filter_map(|path| {
-            let error = self.verify_file(path).err()?;
-            Some(self.map_fault(path, &error))
-        });
-        match Faults::new(faults.collect()) {
+        let (mut warnings, mut faults) = (Vec::new(), Vec::new());
+        for path in paths {
+            match self.verify_file(path) {
+                Ok(all) => {
+                    let placed = |words| self.placed(path, Severity::Warning, words);
+                    warnings.extend(all.into_iter().map(placed));
+                }
+                Err(error) => faults.push(self.map_fault(path, &error)),
+            }
+        }
+        match Faults::new(faults) {
             Some(faults) => Err(faults),
-            None => Ok(()),
+            None => Ok(warnings),
         }
     }
 
-    fn verify_file(&self, path: &Path) -> Result<(), maps::MapError> {
-        let mut encodings = self
-            .drawings
-            .iter()
-            .flat_map(Drawing::colour_maps)
-            .filter(|(file, _)| file.path == path)
-            .map(|(_, encoding)| encoding)
-            .peekable();
-        if encodings.peek().is_none() {
-            return maps::verify(path).map(|_| ());
+    /// What to warn of in a picture.
+    fn verify_file(&self, path: &Path) -> Result<Vec<Words>, maps::MapError> {
+        let name = self.name_of(path);
+        let mut warnings = Vec::new();
+        let mut replaced = None;
+        let encodings = self.drawings.iter().flat_map(Drawing::colour_maps);
+        for (_, encoding) in encodings.filter(|(file, _)| file.path == path) {
+            replaced = Some(maps::verify_colour(path, encoding)?);
         }
-        encodings.try_for_each(|encoding| maps::verify_colour(path, encoding).map(|_| ()))
+        let legends = self.drawings.iter().flat_map(Drawing::legends);
+        for (_, legend) in legends.filter(|(file, _)| file.path == path) {
+            let (count, unlisted) = maps::verify_legend(path, &legend)?;
+            replaced = Some(count);
+            warnings.extend(unlisted_words(&name, &unlisted, &legend));
+        }
+        let replaced = match replaced {
+            Some(count) => count,
+            None => maps::verify(path)?,
+        };
+        if replaced > 0 {
+            warnings.push(Words::new(
+                format!(
+                    "{}, in which {replaced} values are not finite",
+                    quote(&name)
+                ),
+                "numbers, and 0 is read in place of others",
+                "export it again without NaN and infinities",
+            ));
+        }
+        Ok(warnings)
+    }
+
+    /// A file's name as the manifest gives it.
+    fn name_of(&self, path: &Path) -> String {
+        let name = path.strip_prefix(&self.folder).unwrap_or(path);
+        name.to_string_lossy().into_owned()
     }
 
     /// The fault for a picture of the exhibit that could not be loaded, at the place in the
     /// manifest that first names it.
     pub fn map_fault(&self, path: &Path, error: &maps::MapError) -> Fault {
-        let name = path
-            .strip_prefix(&self.folder)
-            .unwrap_or(path)
-            .to_string_lossy();
-        let words = map_words(&name, error, PICTURE);
+        let words = map_words(&self.name_of(path), error, PICTURE);
+        self.placed(path, Severity::Error, words)
+    }
+
+    /// What is to be said of a picture, at the place in the manifest that first names it.
+    fn placed(&self, path: &Path, severity: Severity, words: Words) -> Fault {
         let named = document::read_text(&self.manifest).ok().and_then(|text| {
             let document = Document::parse(&self.manifest, &text).ok()?;
             let same = |text: &str| {
@@ -104,10 +138,13 @@ impl Exhibit {
                     .is_some_and(|file| self.folder.join(file.as_str()) == path)
             };
             let trail = document.find_text(same)?;
-            Some(document.fault(&trail, document::At::Value, Severity::Error, words.clone()))
+            Some(document.fault(&trail, document::At::Value, severity, words.clone()))
         });
         // The manifest may have changed since it was read.
-        named.unwrap_or_else(|| words.of_file(&self.manifest))
+        named.unwrap_or_else(|| Fault {
+            severity,
+            ..words.of_file(&self.manifest)
+        })
     }
 }
 
@@ -200,6 +237,72 @@ impl Drawing {
             .map(|map| (&map.file, map.encoding))
             .chain(pictures)
     }
+}
+
+impl Drawing {
+    /// The pictures whose colours stand for something, with those that their legends name.
+    fn legends(&self) -> impl Iterator<Item = (&MapFile, Vec<[u8; 3]>)> {
+        let sides = [Some(&self.recto), self.verso.as_ref()]
+            .into_iter()
+            .flatten()
+            .flat_map(|side| &side.media);
+        let patches = self
+            .states
+            .iter()
+            .flat_map(|state| [&state.recto, &state.verso])
+            .flat_map(|patch| patch.media.iter().flatten());
+        let media = sides.chain(patches).filter_map(|map| match &map.content {
+            MediaContent::Legend(legend) => {
+                Some((&map.file, legend.iter().map(|entry| entry.0).collect()))
+            }
+            MediaContent::Weights(_) => None,
+        });
+        let overlays = self
+            .overlays
+            .iter()
+            .filter_map(|overlay| match &overlay.kind {
+                OverlayKind::Categorical(legend) => {
+                    let colours = legend.iter().map(|entry| entry.colour).collect();
+                    Some((&overlay.file, colours))
+                }
+                OverlayKind::Continuous { .. } | OverlayKind::Picture(_) => None,
+            });
+        media.chain(overlays)
+    }
+}
+
+/// What to say of colours, the commonest first, that a legend does not name. White and black
+/// ones are taken for the ground that the others lie on.
+fn unlisted_words(name: &str, unlisted: &[([u8; 3], u64)], legend: &[[u8; 3]]) -> Option<Words> {
+    /// How many colours are named.
+    const MOST: usize = 3;
+    let hex = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
+    let is_ground = |colour: &[u8; 3]| matches!(colour, [0, 0, 0] | [255, 255, 255]);
+    let mut colours: Vec<String> = unlisted
+        .iter()
+        .filter(|(colour, _)| !is_ground(colour))
+        .map(|(colour, count)| match count {
+            1 => format!("{} (1 pixel)", hex(*colour)),
+            count => format!("{} ({count} pixels)", hex(*colour)),
+        })
+        .collect();
+    let more = colours.len().saturating_sub(MOST);
+    colours.truncate(MOST);
+    if more > 0 {
+        colours.push(format!("{more} more"));
+    }
+    (!colours.is_empty()).then(|| {
+        let allowed: Vec<String> = legend.iter().copied().map(hex).collect();
+        Words::new(
+            format!(
+                "{} with colours that its legend does not name: {}",
+                quote(name),
+                colours.join(", ")
+            ),
+            allowed.join(", "),
+            "correct the colours or add them to the legend; such pixels count as bare",
+        )
+    })
 }
 
 impl Side {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::{
     ColourMapName, MapError, Pyramid,
-    decode::{Raster, Samples},
+    decode::{Picture, Raster, Samples},
     load::{decode, finish},
     pyramid,
 };
@@ -15,13 +15,16 @@ use crate::colour;
 /// The most media that one file can hold: the channels of a texture.
 pub const MAX_WEIGHTS: usize = 4;
 
+/// 8-bit sRGB colours, and how many pixels have each.
+pub type ColourCounts = Vec<([u8; 3], u64)>;
+
 /// A map read by a legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LegendMap {
     pub pyramid: Pyramid,
     /// Colours of the picture (8-bit sRGB) that the legend does not name, and how many pixels
     /// have each, the commonest first. Transparent pixels are not counted.
-    pub unlisted: Vec<([u8; 3], u64)>,
+    pub unlisted: ColourCounts,
 }
 
 /// Loads a map of media whose colours a legend names: one channel of coverage for each colour in
@@ -50,6 +53,16 @@ pub fn load_media_legend(path: &Path, legend: &[[u8; 3]]) -> Result<LegendMap, M
     })
 }
 
+/// Decodes a picture that a legend reads, which finds damaged ones, and discards it. Returns how
+/// many values were NaN or infinite, and what [`LegendMap::unlisted`] says.
+///
+/// # Errors
+/// As [`super::verify`].
+pub fn verify_legend(path: &Path, legend: &[[u8; 3]]) -> Result<(u64, ColourCounts), MapError> {
+    let raster = decode(path)?;
+    Ok((raster.replaced, unlisted(&raster, legend)))
+}
+
 /// Loads a map of media whose first `count` channels are the coverage of one medium each; unused
 /// channels are 0. 8 bits for files of 8 bits, else 16.
 ///
@@ -58,7 +71,8 @@ pub fn load_media_legend(path: &Path, legend: &[[u8; 3]]) -> Result<LegendMap, M
 /// `count` is 0 or more than [`MAX_WEIGHTS`].
 pub fn load_media_weights(path: &Path, count: usize) -> Result<Pyramid, MapError> {
     check_weights(path, "media", count)?;
-    let raster = decode(path)?;
+    // Every channel is an amount of its own, a fourth one too: none multiplies the others.
+    let raster = Picture::open(path)?.decode()?;
     if raster.channels < count {
         return Err(MapError::unsupported(
             path,
@@ -187,7 +201,7 @@ fn find(
     }
 }
 
-fn unlisted(raster: &Raster, legend: &[[u8; 3]]) -> Vec<([u8; 3], u64)> {
+fn unlisted(raster: &Raster, legend: &[[u8; 3]]) -> ColourCounts {
     let add = |mut counts: HashMap<[u8; 3], u64>, (colour, run): ([u8; 3], u64)| {
         if !legend.contains(&colour) {
             *counts.entry(colour).or_default() += run;

@@ -20,8 +20,8 @@ use super::{
 /// 1.0003; far below what can be seen, but half floats would then be coarser everywhere.
 const INSIDE: RangeInclusive<f32> = -1e-4..=1.001;
 
-/// Loads a map of colour as linear sRGB with alpha 1 (an alpha channel of the file is ignored),
-/// averaged in linear light. 16-bit texels where every value lies in 0…1, else half floats, so
+/// Loads a map of colour as linear sRGB with alpha 1 (an alpha channel of the file is ignored,
+/// and divided out where it multiplies the colours), averaged in linear light. 16-bit texels where every value lies in 0…1, else half floats, so
 /// that colours outside sRGB keep their negative components; beyond ±65504 they are clamped.
 ///
 /// # Errors
@@ -42,8 +42,7 @@ pub fn load_colour(path: &Path, encoding: ColourEncoding) -> Result<Pyramid, Map
 /// # Errors
 /// As [`super::verify`].
 pub fn load_overlay_picture(path: &Path, encoding: ColourEncoding) -> Result<Pyramid, MapError> {
-    let mut raster = decode(path)?;
-    raster.unmultiply();
+    let raster = decode(path)?;
     let linear = Linear::new(path, &raster, encoding)?;
     let row = |y: usize, out: &mut [[f32; 4]]| {
         linear.row(y, out);
@@ -226,8 +225,11 @@ fn scalar<T: Texel>(raster: &Raster, value: impl Fn(f32, f32) -> f32 + Sync) -> 
     pyramid::build::<T, 1, 1>(raster.size(), row, |mean| mean)
 }
 
+/// A picture whose colours do not depend on its alpha, whichever way its file stores them.
 pub(super) fn decode(path: &Path) -> Result<Raster, MapError> {
-    Picture::open(path)?.decode()
+    let mut raster = Picture::open(path)?.decode()?;
+    raster.unmultiply();
+    Ok(raster)
 }
 
 pub(super) fn finish(raster: &Raster, pyramid: Pyramid) -> Pyramid {

@@ -31,8 +31,8 @@ use serde::{Deserialize, Serialize};
 pub use error::MapError;
 pub use header::{Header, probe, verify, verify_colour};
 pub use legend::{
-    LegendMap, MAX_WEIGHTS, load_media_legend, load_media_weights, load_overlay_categorical,
-    load_overlay_continuous,
+    ColourCounts, LegendMap, MAX_WEIGHTS, load_media_legend, load_media_weights,
+    load_overlay_categorical, load_overlay_continuous, verify_legend,
 };
 pub use load::{
     Coding, load_colour, load_height, load_normal, load_outline, load_overlay_picture,

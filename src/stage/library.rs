@@ -2,7 +2,8 @@
 
 use std::{
     fmt,
-    path::PathBuf,
+    panic::{self, AssertUnwindSafe},
+    path::{Path, PathBuf},
     sync::{Arc, Mutex, mpsc},
 };
 
@@ -113,6 +114,11 @@ impl Library {
         }
     }
 
+    /// Filters maps with `anisotropy` (1 to 16), those that are loaded from now on.
+    pub fn set_anisotropy(&mut self, anisotropy: u16) {
+        self.anisotropy = anisotropy;
+    }
+
     /// Forgets everything: the files may have changed.
     pub fn clear(&mut self) {
         self.entries.clear();
@@ -173,7 +179,7 @@ impl Library {
         let (sender, generation) = (self.sender.clone(), self.generation);
         let (anisotropy, reads_unorm16) = (self.anisotropy, self.reads_unorm16);
         rayon::spawn(move || {
-            let decoded = match &request {
+            let decoded = unless_panicked(&request.path(), || match &request {
                 Request::Map(map) => load(map).map(|pyramid| {
                     let coding = normal_coding(&pyramid.levels[0].texels);
                     let image = upload::map_image(pyramid, anisotropy, reads_unorm16);
@@ -182,7 +188,7 @@ impl Library {
                 Request::Surface(surface, size) => {
                     load_surface(surface, *size).map(Decoded::Surface)
                 }
-            };
+            });
             // The receiver is gone when the program is closing: nobody is left to tell.
             let _ = sender.send((generation, request, decoded));
             if let Some(Waker(wake)) = waker {
@@ -228,6 +234,20 @@ pub fn receive(mut library: ResMut<Library>, mut images: ResMut<Assets<Image>>) 
             *slot = entry;
         }
     }
+}
+
+/// What `load` gives; where it panics, as a decoder may over a damaged file, the fault of the
+/// file at `path`: a panic would end the whole program from a thread of rayon's.
+fn unless_panicked<T>(
+    path: &Path,
+    load: impl FnOnce() -> Result<T, MapError>,
+) -> Result<T, MapError> {
+    panic::catch_unwind(AssertUnwindSafe(load)).unwrap_or_else(|_| {
+        Err(MapError::Damaged {
+            path: path.to_owned(),
+            detail: "its decoder failed".to_owned(),
+        })
+    })
 }
 
 /// The one place where a map's file becomes texels.
@@ -292,4 +312,20 @@ fn curl(map: &HeightMap, size_mm: DVec2) -> Result<SideSurface, MapError> {
 /// is paper, a category or a value is a sign.
 pub fn is_lit(kind: &OverlayKind) -> bool {
     matches!(kind, OverlayKind::Picture(_))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_decoder_that_panics_is_a_fault_of_its_file() {
+        let path = Path::new("sheet.png");
+        let error = unless_panicked::<()>(path, || panic!("a test of panics")).unwrap_err();
+        assert!(
+            error.to_string().starts_with("sheet.png: is damaged"),
+            "{error}"
+        );
+        assert!(matches!(unless_panicked(path, || Ok(7)), Ok(7)));
+    }
 }

@@ -164,3 +164,24 @@ fn an_old_file_is_replaced_whole() {
     code(&sheet.render(&out, &[]).output().unwrap(), 0);
     assert_eq!(image::open(&out).unwrap().dimensions(), (64, 64));
 }
+
+#[cfg(unix)]
+#[test]
+fn a_current_folder_that_was_deleted_is_refused() {
+    let sheet = Sheet::new();
+    let gone = sheet.out("gone");
+    fs::create_dir(&gone).unwrap();
+    let output = std::process::Command::new("sh")
+        .args([
+            "-c",
+            r#"cd "$1" && rmdir "$1" && exec "$2" render "$3" --all-scenes --out out"#,
+        ])
+        .arg("sh")
+        .arg(&gone)
+        .arg(env!("CARGO_BIN_EXE_recto"))
+        .arg(sheet.exhibit())
+        .output()
+        .unwrap();
+    let stderr = code(&output, 1);
+    assert!(stderr.starts_with("recto: .: "), "{stderr}");
+}

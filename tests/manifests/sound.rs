@@ -1,5 +1,7 @@
 //! What sound manifests mean.
 
+use std::path::Path;
+
 use glam::{DVec2, DVec3};
 use recto::{
     manifest::{
@@ -163,7 +165,19 @@ fn every_key_arrives() {
 fn sound_pictures_pass_and_a_damaged_one_is_named_where_it_is_written() {
     let folder = Folder::with(FULL);
     let (exhibit, _) = Exhibit::read(&folder.exhibit).unwrap();
-    assert_eq!(exhibit.verify(exhibit.maps()), Ok(()));
+    // Their one colour is none of the legends'.
+    let warnings = exhibit.verify(exhibit.maps()).unwrap();
+    let warnings: Vec<String> = warnings
+        .iter()
+        .map(|warning| folder.relative(&warning.to_string()))
+        .collect();
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert_eq!(
+        warnings[0],
+        "exhibit.toml:21:19: warning: drawing[0].recto.albedo.file: found \"recto.png\" with \
+         colours that its legend does not name: #c8beaa (200 pixels); allowed: #3b2a1a, #808080; \
+         correct the colours or add them to the legend; such pixels count as bare"
+    );
     let truncated = std::fs::read(folder.exhibit.join("truncated.png")).unwrap();
     std::fs::write(folder.exhibit.join("small.png"), truncated).unwrap();
     let faults = exhibit.verify(exhibit.maps()).unwrap_err();
@@ -183,7 +197,11 @@ fn what_is_not_shown_yet_is_named() {
             "Lamp \"studio\": lamps by a photometric file are not shown yet.",
             "Lamp \"table\": light tables are not shown yet.",
             "Drawing \"landscape\": transmission is not shown yet.",
+            "Drawing \"landscape\": media maps do not change the picture yet.",
+            "Drawing \"landscape\": thickness_um of the paper does not change the picture yet.",
+            "Drawing \"landscape\": chain_lines_mm of the paper does not change the picture yet.",
             "Drawing \"landscape\": hotspots are not shown yet.",
+            "Drawing \"figure\": media maps do not change the picture yet.",
             "Scene \"restoration\": comparisons (curtain) are not shown yet.",
             "Tour \"attract\": tours do not run yet.",
         ]
@@ -334,13 +352,24 @@ fn a_new_exhibit_is_sound_and_an_old_one_is_kept() {
     let folder = Folder::new();
     let picture = folder.exhibit.join("recto.png");
     let fresh = folder.exhibit.join("a/new \"exhibit\"");
-    let manifest = create(&fresh, &picture, [200.0, 100.0]).unwrap();
+    let (manifest, warnings) = create(&fresh, &picture, [200.0, 100.0]).unwrap();
+    assert_eq!(warnings, []);
     let (exhibit, warnings) = Exhibit::read(&manifest).unwrap();
     assert_eq!(
         (warnings.len(), exhibit.drawings[0].size_mm),
         (0, DVec2::new(200.0, 100.0))
     );
     check_shape(&std::fs::read_to_string(&manifest).unwrap()).unwrap();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As readable for others as any file that is made here.
+        let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode();
+        let usual = folder.exhibit.join("usual");
+        std::fs::write(&usual, "").unwrap();
+        assert_eq!(mode(&manifest), mode(&usual));
+        assert_eq!(mode(&fresh.join("recto.png")), mode(&usual));
+    }
 
     let error = create(&fresh, &picture, [200.0, 100.0]).unwrap_err();
     assert!(error.to_string().ends_with(
@@ -352,4 +381,74 @@ fn a_new_exhibit_is_sound_and_an_old_one_is_kept() {
     let letter = folder.exhibit.join("letter.png");
     assert!(create(&folder.exhibit.join("b"), &letter, [200.0, 100.0]).is_err());
     assert!(!folder.exhibit.join("b").exists());
+}
+
+#[test]
+fn a_new_exhibit_takes_no_other_picture_of_the_same_name_and_tells_its_warnings() {
+    let folder = Folder::new();
+    let picture = folder.exhibit.join("recto.png");
+    let fresh = folder.exhibit.join("fresh");
+    std::fs::create_dir(&fresh).unwrap();
+    let taken = fresh.join("recto.png");
+    std::fs::copy(folder.exhibit.join("noise.png"), &taken).unwrap();
+    let error = create(&fresh, &picture, [200.0, 100.0]).unwrap_err();
+    assert!(
+        error.to_string().contains("another file than the picture"),
+        "{error}"
+    );
+    assert!(!fresh.join("exhibit.toml").exists());
+
+    // The same picture may be there already.
+    std::fs::copy(&picture, &taken).unwrap();
+    let (_, warnings) = create(&fresh, &picture, [200.0, 90.0]).unwrap();
+    let [warning] = &warnings[..] else {
+        panic!("{warnings:?}")
+    };
+    assert!(warning.found.contains("taller in proportion"), "{warning}");
+}
+
+#[test]
+fn a_scene_lit_only_by_lamps_that_are_not_shown_is_a_warning() {
+    let table = "[[lamp]]\nid = \"table\"\nkind = \"light-table\"\nnits = 1500\n";
+    let scene = format!("{SMALL}{table}[[scene]]\nid = \"a\"\nlamps = [\"table\"]\n");
+    let [warning] = &warnings(&scene)[..] else {
+        panic!()
+    };
+    assert!(
+        warning.contains("scene[0].lamps: found no light in this version"),
+        "{warning}"
+    );
+    let with_ambient = format!("{scene}ambient = {{ lux = 100 }}\n");
+    assert_eq!(warnings(&with_ambient), [""; 0]);
+}
+
+#[test]
+fn a_lamp_at_the_sheet_gives_it_what_was_asked_for() {
+    let exhibit = read(&format!(
+        "{SMALL}[[lamp]]\nid = \"near\"\nkind = \"point\"\nlux_at_sheet = 500\n\
+         position_mm = [0, 0, 2]\n"
+    ));
+    let lighting = exhibit.lighting(&exhibit.scenes[0]);
+    close(lighting.reference_lux, 500.0);
+}
+
+#[test]
+fn white_and_black_are_the_ground_of_a_legend() {
+    let folder = Folder::with(format!(
+        "{SMALL}recto.media = {{ file = \"mask.png\", legend = {{ \"#ff0000\" = \"wash\" }} }}\n"
+    ));
+    let verify = |colours: [[u8; 3]; 4]| {
+        let pixels: Vec<[u8; 3]> = (0..200).map(|i| colours[i % 4]).collect();
+        let path = folder.exhibit.join("mask.png");
+        recto::maps::encode::save_png_rgb8(&path, 20, 10, &pixels, None).unwrap();
+        let (exhibit, _) = Exhibit::read(&folder.exhibit).unwrap();
+        exhibit.verify(exhibit.maps()).unwrap()
+    };
+    let (red, ground) = ([255, 0, 0], [255; 3]);
+    assert_eq!(verify([red, ground, ground, [0; 3]]), []);
+    let [warning] = &verify([red, [254, 0, 0], [254, 0, 0], ground])[..] else {
+        panic!()
+    };
+    assert_eq!(warning.path, "drawing[0].recto.media.file");
+    assert!(warning.found.ends_with("#fe0000 (100 pixels)"), "{warning}");
 }

@@ -6,7 +6,7 @@ use exr::prelude::read_first_flat_layer_from_file;
 use glam::DVec3;
 use recto::{
     colour,
-    maps::{self, ColourEncoding, Texels, encode, probe, verify},
+    maps::{self, ColourEncoding, ColourMapName, MapError, Pyramid, Texels, encode, probe, verify},
 };
 
 use super::{channel, correlation, files_below, folder, mean, support::data};
@@ -385,4 +385,29 @@ fn the_format_is_that_of_the_content() {
     let png = folder.path().join("really-png.jpg");
     encode::save_png_grey8(&png, 1, 1, &[9], None).expect("written");
     assert_eq!(probe(&png).expect("read").size, [1, 1]);
+}
+
+#[test]
+fn alpha_that_a_file_has_multiplied_already_counts_once() {
+    let folder = folder();
+    let path = folder.path().join("half.exr");
+    // 0.8 under an opacity of one half.
+    exr::prelude::write_rgba_file(&path, 2, 2, |_, _| (0.4f32, 0.4f32, 0.4f32, 0.5f32))
+        .expect("written");
+    let near = |pyramid: Result<Pyramid, MapError>, expected: &[f32]| {
+        let texels = &pyramid.expect("read").levels[0].texels;
+        for (i, expected) in expected.iter().enumerate() {
+            let found = texels.get(i).expect("there");
+            assert!((found - expected).abs() < 0.003, "{i}: {found} {expected}");
+        }
+    };
+    let encoding = ColourEncoding::Embedded;
+    near(maps::load_colour(&path, encoding), &[0.8, 0.8, 0.8, 1.0]);
+    let picture = maps::load_overlay_picture(&path, encoding);
+    near(picture, &[0.4, 0.4, 0.4, 0.5]);
+    near(maps::load_outline(&path), &[0.4]);
+    near(maps::load_height(&path), &[0.8]);
+    let grey = ColourMapName::Grey;
+    let [r, g, b] = grey.colour(0.8).map(|v| v as f32 * 0.5);
+    near(maps::load_overlay_continuous(&path, grey), &[r, g, b, 0.5]);
 }

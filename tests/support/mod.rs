@@ -1,6 +1,9 @@
 //! What several test files share.
 
-use std::path::PathBuf;
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
 
 /// A file or folder of the shared test data (`$RECTO_DATA`, or `../shared/data` beside the
 /// checkout). Where the whole data folder is absent, says that `test` is skipped and returns
@@ -11,7 +14,9 @@ pub fn data(test: &str, path: &str) -> Option<PathBuf> {
         None => PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")),
     };
     if !root.is_dir() {
-        eprintln!(
+        // `cargo test` shows what passing tests print only if it did not go through a macro.
+        let _ = writeln!(
+            io::stderr(),
             "skipped: {test} needs the test data, which is not in {}",
             root.display()
         );

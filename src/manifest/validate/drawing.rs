@@ -18,7 +18,7 @@ use super::{
     Validator,
     names::Names,
     placement::Placement,
-    side::Named,
+    side::{Named, no_maps},
 };
 use crate::{
     optics::medium::MediumId,
@@ -58,13 +58,35 @@ impl Validator<'_, '_> {
             let trail = trail.key("transmission").key("map");
             self.covering_map(&Named::plain(&transmission.map, &trail), size_mm)
         });
+        let states = raw.state.iter().flat_map(List::iter);
+        let mut sides = states
+            .flat_map(|(_, state)| [&state.recto, &state.verso])
+            .flatten()
+            .chain([&raw.recto.0])
+            .chain(raw.verso.as_ref().map(|verso| &verso.0));
+        if sides.any(|side| side.media.is_some()) {
+            self.not_shown_yet(format!(
+                "Drawing \"{id}\": media maps do not change the picture yet."
+            ));
+        }
+        if let Some(Brief::Full(paper)) = &raw.paper {
+            let constants = [
+                ("thickness_um", paper.thickness_um.is_some()),
+                ("chain_lines_mm", paper.chain_lines_mm.is_some()),
+            ];
+            for (key, _) in constants.iter().filter(|(_, given)| *given) {
+                self.not_shown_yet(format!(
+                    "Drawing \"{id}\": {key} of the paper does not change the picture yet."
+                ));
+            }
+        }
         if raw.hotspot.is_some() {
             self.not_shown_yet(format!("Drawing \"{id}\": hotspots are not shown yet."));
         }
         let states = self.each(
             &raw.state,
             &trail.key("state"),
-            |validator, state, trail| validator.state(state, trail, size_mm),
+            |validator, state, trail| validator.state(state, trail, size_mm, raw.verso.is_some()),
         );
         let overlays = self.each(
             &raw.overlay,
@@ -179,7 +201,13 @@ impl Validator<'_, '_> {
         self.model(gltf, &trail.key("gltf")).map(Surface::Gltf)
     }
 
-    fn state(&mut self, raw: &RawState, trail: &Trail, size_mm: DVec2) -> Option<State> {
+    fn state(
+        &mut self,
+        raw: &RawState,
+        trail: &Trail,
+        size_mm: DVec2,
+        has_verso: bool,
+    ) -> Option<State> {
         if raw.id.as_str() == NO_STATE {
             let words = Words::new(
                 format!("the id \"{NO_STATE}\""),
@@ -187,6 +215,19 @@ impl Validator<'_, '_> {
                 "choose another: a scene asks by this word for no state",
             );
             self.report.fault(&trail.key("id"), words);
+        }
+        // Without an albedo from anywhere the side stays bare paper.
+        if let Some(verso) = &raw.verso
+            && !has_verso
+            && verso.albedo.is_none()
+            && !no_maps(verso)
+        {
+            let words = Words::new(
+                "maps for a verso that the drawing lacks, without albedo",
+                "an albedo here, or maps that replace those of a verso",
+                "add albedo, or give the drawing a verso",
+            );
+            self.report.fault(&trail.key("verso"), words);
         }
         let mut patch = |side: &Option<RawSide>, name, key| {
             side.as_ref().map_or_else(SidePatch::default, |side| {

@@ -16,7 +16,7 @@ use super::{
     Validator,
 };
 use crate::{
-    optics::lamp_units,
+    optics::{lamp::DISTANCE2_MIN_MM2, lamp_units},
     units::{Candela, Degrees, Kelvin, Lux, Nits},
 };
 
@@ -259,7 +259,11 @@ fn intensity(
     from_flux: impl FnOnce(f64) -> f64,
 ) -> Option<f64> {
     match light {
-        (Some(lux), _, _) => Some(lamp_units::intensity_for(lux.0, position_mm.length())),
+        (Some(lux), _, _) => {
+            // Light is calculated as from no nearer, and the sheet is to get what was asked for.
+            let distance_mm = position_mm.length().max(DISTANCE2_MIN_MM2.sqrt());
+            Some(lamp_units::intensity_for(lux.0, distance_mm))
+        }
         (_, Some(candela), _) => Some(candela.0),
         (_, _, Some(lumen)) => Some(from_flux(lumen.0)),
         (None, None, None) => None,

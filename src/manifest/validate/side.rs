@@ -192,7 +192,8 @@ impl Validator<'_, '_> {
     }
 }
 
-fn no_maps(raw: &RawSide) -> bool {
+/// Whether a side names no map at all.
+pub(super) fn no_maps(raw: &RawSide) -> bool {
     raw.albedo.is_none()
         && raw.normal.is_none()
         && raw.height.is_none()

@@ -105,11 +105,18 @@ impl Raster {
         }
     }
 
-    /// Divides colour by alpha where the file has multiplied it; transparent pixels are black.
+    /// Divides colour by alpha where the file has multiplied it; wholly transparent pixels stay
+    /// as they are.
     pub fn unmultiply(&mut self) {
-        fn run<T: Copy>(values: &mut [T], channels: usize, divide: impl Fn(T, T) -> T) {
+        fn run<T: Copy + Default + PartialOrd>(
+            values: &mut [T],
+            channels: usize,
+            divide: impl Fn(T, T) -> T,
+        ) {
             for pixel in values.chunks_exact_mut(channels) {
-                if let [colours @ .., alpha] = pixel {
+                if let [colours @ .., alpha] = pixel
+                    && *alpha > T::default()
+                {
                     for value in colours {
                         *value = divide(*value, *alpha);
                     }
@@ -119,7 +126,7 @@ impl Raster {
         if !std::mem::take(&mut self.premultiplied) || !self.channels.is_multiple_of(2) {
             return;
         }
-        let ratio = |value: f64, alpha: f64| if alpha > 0.0 { value / alpha } else { 0.0 };
+        let ratio = |value: f64, alpha: f64| value / alpha;
         // Casts to integers saturate.
         match &mut self.samples {
             Samples::U8(v) => run(v, self.channels, |v, a| {
