@@ -216,7 +216,7 @@ impl Drawing {
 
 impl Drawing {
     /// The pictures whose colours are meant as such, and how they are encoded.
-    fn colour_maps(&self) -> impl Iterator<Item = (&MapFile, ColourEncoding)> {
+    pub(crate) fn colour_maps(&self) -> impl Iterator<Item = (&MapFile, ColourEncoding)> {
         let sides = [Some(&self.recto), self.verso.as_ref()]
             .into_iter()
             .flatten();

@@ -25,7 +25,7 @@ use super::{Arranged, Library, StageSet, Waker, say};
 use crate::{
     manifest::{
         Fault, Faults,
-        exhibit::{Exhibit, MapFile, OverlayKind, Surface},
+        exhibit::{Drawing, Exhibit, MapFile, Surface},
     },
     maps::ColourEncoding,
 };
@@ -176,22 +176,7 @@ struct Check {
 
 /// How the colours of the picture at `path` are encoded, wherever it is one of colours.
 fn encodings(exhibit: &Exhibit, path: &Path) -> HashSet<ColourEncoding> {
-    let drawings = exhibit.drawings.iter();
-    let colours = drawings.flat_map(|drawing| {
-        let sides = [Some(&drawing.recto), drawing.verso.as_ref()];
-        let states = drawing.states.iter();
-        let patches = states.flat_map(|state| [&state.recto, &state.verso]);
-        let overlays = drawing.overlays.iter();
-        let pictures = overlays.filter_map(|overlay| match overlay.kind {
-            OverlayKind::Picture(encoding) => Some((&overlay.file, encoding)),
-            OverlayKind::Categorical(_) | OverlayKind::Continuous { .. } => None,
-        });
-        let albedos = sides.into_iter().flatten().map(|side| &side.albedo);
-        albedos
-            .chain(patches.filter_map(|patch| patch.albedo.as_ref()))
-            .map(|map| (&map.file, map.encoding))
-            .chain(pictures)
-    });
+    let colours = exhibit.drawings.iter().flat_map(Drawing::colour_maps);
     colours
         .filter(|(file, _)| file.path == path)
         .map(|(_, encoding)| encoding)
