@@ -3,6 +3,7 @@
 use std::{
     path::PathBuf,
     sync::{Arc, Mutex},
+    time::{Duration, Instant},
 };
 
 use bevy::{
@@ -65,8 +66,8 @@ pub struct Picture {
     pub legend: Vec<[f32; 4]>,
 }
 
-/// How many frames a settled stage may take to reach the picture and back.
-const PATIENCE_FRAMES: u32 = 64;
+/// How long a picture may take to come back from the device: a large one is a gigabyte.
+const PATIENCE: Duration = Duration::from_secs(120);
 /// Frames between settling and capture: maps reach the GPU in the first, materials in the
 /// second.
 const SETTLING_FRAMES: u32 = 3;
@@ -305,7 +306,8 @@ impl Darkroom {
     /// Waits for the bytes of all that was taken.
     fn develop(&mut self, taken: &[Taken]) -> Result<Vec<Vec<u8>>, ShotError> {
         let mut bytes = vec![None; taken.len()];
-        for _ in 0..PATIENCE_FRAMES {
+        let asked = Instant::now();
+        while asked.elapsed() < PATIENCE {
             self.frame()?;
             for (bytes, taken) in bytes.iter_mut().zip(taken) {
                 if let Some(arrived) = taken.lock().ok().and_then(|mut slot| slot.take()) {
@@ -315,6 +317,7 @@ impl Darkroom {
             if bytes.iter().all(Option::is_some) {
                 return Ok(bytes.into_iter().flatten().collect());
             }
+            std::thread::sleep(Duration::from_millis(1));
         }
         Err(ShotError::Device(
             "the picture did not come back from the device".into(),

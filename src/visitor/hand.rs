@@ -208,7 +208,14 @@ impl Hand {
                 let by = self.on_table(by);
                 self.place_lamp(|lamp| lamp.moved(by));
             }
-            Intent::RaiseLamp(elevation) => self.place_lamp(|lamp| lamp.raised(elevation)),
+            Intent::RaiseLamp(elevation) => {
+                self.place_lamp(|lamp| lamp.raised(elevation));
+                // Another set-up of the lamp, to which the eye adapts, unlike a lamp that is
+                // only moved.
+                if self.exposed_for.is_some() {
+                    self.exposed_for = Some(Lux(self.lit.lighting(self.written()).reference_lux));
+                }
+            }
             Intent::StepState(by) => {
                 let drawing = self.exhibit.drawing_of(&self.exhibit.scenes[self.scene]);
                 self.view.step_state(drawing, by);
@@ -571,7 +578,10 @@ impl Hand {
 
     fn relight(&mut self) {
         self.lit = self.view.lit(&self.exhibit, self.written());
-        self.exposed_for = (!Arc::ptr_eq(&self.lit, &self.exhibit))
-            .then(|| Lux(self.exhibit.lighting(self.written()).reference_lux));
+        let moved = !Arc::ptr_eq(&self.lit, &self.exhibit);
+        let held = self.exposed_for.take();
+        self.exposed_for = moved.then(|| {
+            held.unwrap_or_else(|| Lux(self.exhibit.lighting(self.written()).reference_lux))
+        });
     }
 }

@@ -351,10 +351,24 @@ fn a_lowered_lamp_darkens_the_sheet() {
         light.illuminance(DVec3::ZERO, DVec3::Z).y
     };
     let written = lux(&hand);
-    hand.apply(Intent::RaiseLamp(5.0));
+    let height = |hand: &Hand| {
+        hand.lamp()
+            .expect("a lamp")
+            .elevation_deg
+            .to_radians()
+            .sin()
+    };
+    let high = height(&hand);
+    hand.apply(Intent::MoveLamp(DVec2::new(-0.1, 0.0)));
+    assert!(height(&hand) < high);
     let share = lux(&hand) / written;
-    let expected = 5f64.to_radians().sin() / 25f64.to_radians().sin();
+    let expected = height(&hand) / high;
     assert!((share - expected).abs() < 1e-9, "{share} {expected}");
+    // A key sets the lamp up anew, and the eye adapts; moved from there, it darkens again.
+    hand.apply(Intent::RaiseLamp(5.0));
+    assert!((lux(&hand) / written - 1.0).abs() < 1e-9);
+    hand.apply(Intent::MoveLamp(DVec2::new(0.1, 0.0)));
+    assert!(lux(&hand) > 1.2 * written);
     hand.apply(Intent::Home);
     assert_eq!(lux(&hand), written);
 }
