@@ -165,7 +165,7 @@ mod tests {
                 }
             }
         }
-        // 36% at the worst of these, for grazing light on paper of middle roughness.
+        // 26% at the worst of these.
         assert!((0.1..0.4).contains(&worst), "{worst}");
     }
 

@@ -3,8 +3,8 @@
 //!
 //! Both quantities are smooth in x = √μ and s = √α once the surface is not a mirror. A
 //! polynomial of degree 6 in x and 3 in s through Chebyshev nodes is within 4e-3 of the
-//! integral for α ≥ [`ALPHA_FIT_MIN`] (8e-4 in the mean). It costs a few multiplications where
-//! a texture would cost ten reads: on a software driver that is 15 ns a pixel.
+//! integral for α ≥ [`ALPHA_FIT_MIN`] (8e-4 in the mean). It costs a few multiplications
+//! where a texture would cost ten reads a pixel.
 
 use std::f64::consts::PI;
 
