@@ -48,6 +48,9 @@ struct Paper {
     outline_place: MapPlace,
     // Linear level at which a window shows a perfect diffuser (x); the rest is unused.
     level: vec4<f32>,
+    // Radiance of the light table behind the sheet, where a perfect diffuser at the reference
+    // illuminance shows 1.
+    light_table: vec3<f32>,
     interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,

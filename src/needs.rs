@@ -181,7 +181,7 @@ fn side_needs(
         .lamps
         .iter()
         .map(|&lamp| &exhibit.lamps[lamp].kind)
-        .filter(|kind| kind.is_shown())
+        .filter(|kind| kind.is_shown() && !kind.is_behind())
         .collect();
     terms.area_lamps = tier != Tier::Draft
         && shown

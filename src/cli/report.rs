@@ -13,7 +13,10 @@ use serde::Serialize;
 
 use crate::{
     colour,
-    manifest::{Accuracy, Exhibit, Fault, Faults, Scene, SideName, Source},
+    manifest::{
+        Accuracy, Exhibit, Fault, Faults, Scene, SideName, Source, exhibit::LampKind,
+        lighting::light_table_lux,
+    },
     needs::Needs,
     optics::tier::Tier,
 };
@@ -178,7 +181,7 @@ impl ExposureReport {
             .lamps
             .iter()
             .map(|lamp| &exhibit.lamps[*lamp])
-            .filter(|lamp| lamp.kind.is_shown());
+            .filter(|lamp| lamp.kind.is_shown() && !lamp.kind.is_behind());
         let mut light: Vec<LightReport> = lamps
             .zip(&lighting.lights)
             .map(|(lamp, light)| LightReport {
@@ -186,6 +189,14 @@ impl ExposureReport {
                 lux: lux(light.illuminance(DVec3::ZERO, DVec3::Z)),
             })
             .collect();
+        for lamp in scene.lamps.iter().map(|lamp| &exhibit.lamps[*lamp]) {
+            if let LampKind::LightTable { luminance } = lamp.kind {
+                light.push(LightReport {
+                    lamp: lamp.id.clone(),
+                    lux: light_table_lux(luminance.0),
+                });
+            }
+        }
         if scene.ambient.illuminance.0 > 0.0 {
             light.push(LightReport {
                 lamp: "the room".to_owned(),

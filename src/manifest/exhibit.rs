@@ -299,7 +299,7 @@ pub enum LampKind {
         position_mm: DVec3,
         aim_mm: DVec3,
     },
-    /// A luminous table behind the sheet. Not shown yet.
+    /// A luminous table behind the whole sheet: it shines through it and not on its front.
     LightTable { luminance: Nits },
 }
 
@@ -310,9 +310,15 @@ impl LampKind {
             Self::Distant { .. }
             | Self::Point { .. }
             | Self::Spot { .. }
-            | Self::Rectangle { .. } => true,
-            Self::Disc { .. } | Self::Ies { .. } | Self::LightTable { .. } => false,
+            | Self::Rectangle { .. }
+            | Self::LightTable { .. } => true,
+            Self::Disc { .. } | Self::Ies { .. } => false,
         }
+    }
+
+    /// Whether it shines through the sheet from behind, and on neither side of it.
+    pub fn is_behind(&self) -> bool {
+        matches!(self, Self::LightTable { .. })
     }
 }
 

@@ -19,6 +19,12 @@ const MM2_PER_M2: f64 = 1e6;
 /// A lamp that lights the sheet by less than this is taken for darkness, in lx.
 const DARK_LUX: f64 = 1e-9;
 
+/// Transmittance of the diffuser by which a light table anchors an undeclared exposure. A thin
+/// sheet of drawing paper passes .15 to .3 of diffuse light (slab of OPTICS.md: .18 at 262 µm),
+/// so at a quarter bare paper comes out near what it shows in reflected light, and a watermark
+/// still has room above it.
+const TABLE_TRANSMITTANCE: f64 = 0.25;
+
 /// The light of a scene in the table frame, pre-exposed: a perfect diffuser facing the
 /// reference illuminance shows 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +32,11 @@ pub struct Lighting {
     pub lights: Vec<Light>,
     /// Illuminance of the room's even light, in the unit of [`Light::amount`].
     pub ambient: DVec3,
+    /// Radiance of the light tables behind the sheet, times π over the reference illuminance:
+    /// in the unit in which a perfect diffuser at that illuminance shows 1. A Lambertian
+    /// emitter that covers the whole back of the sheet and gives the front no light, so it is
+    /// none of `lights`.
+    pub light_table: DVec3,
     /// The reference illuminance, declared or found, in lx.
     pub reference_lux: f64,
 }
@@ -47,6 +58,19 @@ impl Exhibit {
                 })
             })
             .collect();
+        let mut light_table: DVec3 = scene
+            .lamps
+            .iter()
+            .filter_map(|&lamp| {
+                let lamp = &self.lamps[lamp];
+                match lamp.kind {
+                    LampKind::LightTable { luminance } => {
+                        Some(tint(lamp.kelvin, white) * luminance.0)
+                    }
+                    _ => None,
+                }
+            })
+            .sum();
         let ambient_lux = scene.ambient.illuminance.0;
         let reference_lux = scene.exposure.illuminance.map_or_else(
             || {
@@ -54,7 +78,9 @@ impl Exhibit {
                     .iter()
                     .map(|light| light.illuminance(DVec3::ZERO, DVec3::Z))
                     .sum();
-                let lux = colour::luminance(lit.to_array()) + ambient_lux;
+                // A sheet lit from both sides shows the sum of both.
+                let through = light_table_lux(colour::luminance(light_table.to_array()));
+                let lux = colour::luminance(lit.to_array()) + ambient_lux + through;
                 if lux > DARK_LUX { lux } else { 1.0 }
             },
             |lux| lux.0,
@@ -63,13 +89,21 @@ impl Exhibit {
         for light in &mut lights {
             light.amount *= exposure;
         }
+        light_table *= exposure;
         let ambient = tint(scene.ambient.kelvin, white) * (ambient_lux * exposure);
         Lighting {
             lights,
             ambient,
+            light_table,
             reference_lux,
         }
     }
+}
+
+/// Illuminance, in lx, on the front of a white sheet that would look as bright as a light table
+/// of `nits` does through an ordinary sheet: π·L·t.
+pub fn light_table_lux(nits: f64) -> f64 {
+    PI * nits * TABLE_TRANSMITTANCE
 }
 
 /// Linear sRGB of unit luminance for a lamp seen by an eye adapted to `white`.
@@ -84,7 +118,8 @@ pub fn direction(elevation: Degrees, azimuth: Degrees) -> DVec3 {
     DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e)
 }
 
-/// Shape and unexposed amount; `None` for lamps that this version does not show.
+/// Shape and unexposed amount; `None` for a light table, which lights neither side, and for lamps
+/// that this version does not show.
 fn shape(kind: &LampKind) -> Option<(Shape, f64)> {
     Some(match *kind {
         LampKind::Distant {

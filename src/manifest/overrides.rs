@@ -187,7 +187,7 @@ impl Overrides {
                 Ok(index) if !exhibit.lamps[index].kind.is_shown() => faults.push(fault(
                     &option,
                     format!("{}, a kind of lamp that is not shown yet", quote(spec)),
-                    "lamps of the kinds distant, point, spot and rectangle",
+                    "lamps of the kinds distant, point, spot, rectangle and light-table",
                     "choose one of these",
                 )),
                 Ok(index) => lamps.push(index),

@@ -170,6 +170,7 @@ pub struct PaperUniform {
     pub roughness_place: MapPlace,
     pub outline_place: MapPlace,
     pub level: Vec4,
+    pub light_table: Vec3,
     pub interface_table: InterfaceUniform,
     pub lights: [LightUniform; MAX_LAMPS],
     pub overlays: [MapPlace; MAX_OVERLAYS],

@@ -263,6 +263,7 @@ fn place(
         table_from_local.inverse(),
         shown.tier == Tier::Draft,
     );
+    uniform.light_table = lighting.light_table.as_vec3();
     let level = shown.scene.exposure.level as f32;
     uniform.sign_gain = 1.0 / level;
     uniform.level = Vec4::splat(level);

@@ -195,7 +195,6 @@ fn what_is_not_shown_yet_is_named() {
         [
             "Lamp \"ring\": disc lamps are not shown yet.",
             "Lamp \"studio\": lamps by a photometric file are not shown yet.",
-            "Lamp \"table\": light tables are not shown yet.",
             "Drawing \"landscape\": transmission is not shown yet.",
             "Drawing \"landscape\": media maps do not change the picture yet.",
             "Drawing \"landscape\": thickness_um of the paper does not change the picture yet.",
@@ -409,8 +408,9 @@ fn a_new_exhibit_takes_no_other_picture_of_the_same_name_and_tells_its_warnings(
 
 #[test]
 fn a_scene_lit_only_by_lamps_that_are_not_shown_is_a_warning() {
-    let table = "[[lamp]]\nid = \"table\"\nkind = \"light-table\"\nnits = 1500\n";
-    let scene = format!("{SMALL}{table}[[scene]]\nid = \"a\"\nlamps = [\"table\"]\n");
+    let ring = "[[lamp]]\nid = \"ring\"\nkind = \"disc\"\nnits = 1500\ndiameter_mm = 9\n\
+                position_mm = [0, 0, 500]\n";
+    let scene = format!("{SMALL}{ring}[[scene]]\nid = \"a\"\nlamps = [\"ring\"]\n");
     let [warning] = &warnings(&scene)[..] else {
         panic!()
     };
@@ -420,6 +420,23 @@ fn a_scene_lit_only_by_lamps_that_are_not_shown_is_a_warning() {
     );
     let with_ambient = format!("{scene}ambient = {{ lux = 100 }}\n");
     assert_eq!(warnings(&with_ambient), [""; 0]);
+}
+
+#[test]
+fn a_light_table_anchors_the_exposure_by_what_comes_through_a_sheet() {
+    let table = "[[lamp]]\nid = \"table\"\nkind = \"light-table\"\nnits = 1500\n";
+    let scene = format!("{SMALL}{table}[[scene]]\nid = \"a\"\nlamps = [\"table\"]\n");
+    assert_eq!(warnings(&scene), [""; 0]);
+    let exhibit = read(&scene);
+    let lighting = exhibit.lighting(&exhibit.scenes[0]);
+    // It lights no side; through a sheet of transmittance 1/4 it shows 1.
+    assert_eq!(lighting.lights, []);
+    close(lighting.reference_lux, std::f64::consts::PI * 1500.0 / 4.0);
+    close(lighting.light_table.y, 4.0);
+    let declared = scene.replace("\nid = \"a\"", "\nid = \"a\"\nexposure = { lux = 100 }");
+    let exhibit = read(&declared);
+    let lighting = exhibit.lighting(&exhibit.scenes[0]);
+    close(lighting.light_table.y, std::f64::consts::PI * 15.0);
 }
 
 #[test]

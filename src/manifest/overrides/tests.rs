@@ -41,9 +41,11 @@ elevation_deg = 40
 azimuth_deg = 0
 
 [[lamp]]
-id = "table"
-kind = "light-table"
+id = "ring"
+kind = "disc"
 nits = 300
+diameter_mm = 80
+position_mm = [0, 0, 500]
 
 [[scene]]
 id = "near"
@@ -168,7 +170,7 @@ fn all_faults_are_found_at_once() {
         overlays: vec!["infraed".into(), "stains".into(), "infrared=2".into()],
         lamps: vec![
             "windw".into(),
-            "table".into(),
+            "ring".into(),
             "kind=distant,lux_at_sheet=1,elevation_deg=95,azimut_deg=0".into(),
         ],
         camera: text("width_mm=0,true-size@x"),
@@ -239,12 +241,12 @@ fn faults_say_what_is_there_and_what_was_meant() {
         ),
         (
             Overrides {
-                lamps: vec!["table".into()],
+                lamps: vec!["ring".into()],
                 ..Overrides::default()
             },
             &[
-                "--lamp: found \"table\", a kind of lamp that is not shown yet; allowed: lamps of \
-               the kinds distant, point, spot and rectangle; choose one of these",
+                "--lamp: found \"ring\", a kind of lamp that is not shown yet; allowed: lamps of \
+               the kinds distant, point, spot, rectangle and light-table; choose one of these",
             ],
         ),
         (

@@ -61,11 +61,11 @@ impl Validator<'_, '_> {
         let unseen = match kind {
             LampKind::Disc { .. } => Some("disc lamps are"),
             LampKind::Ies { .. } => Some("lamps by a photometric file are"),
-            LampKind::LightTable { .. } => Some("light tables are"),
             LampKind::Distant { .. }
             | LampKind::Point { .. }
             | LampKind::Spot { .. }
-            | LampKind::Rectangle { .. } => None,
+            | LampKind::Rectangle { .. }
+            | LampKind::LightTable { .. } => None,
         };
         if let Some(unseen) = unseen {
             self.not_shown_yet(format!("Lamp \"{id}\": {unseen} not shown yet."));

@@ -186,7 +186,7 @@ impl Validator<'_, '_> {
         {
             let words = Words::new(
                 "no light in this version, which does not show lamps of these kinds yet",
-                "a lamp of the kinds distant, point, spot and rectangle, or ambient light",
+                "a lamp of the kinds distant, point, spot, rectangle and light-table, or ambient light",
                 "add such a lamp or set ambient.lux",
             );
             self.report.warn(&trail.key("lamps"), words);
