@@ -34,6 +34,22 @@ fn fresnel_schlick(cos_i: f32, f_0: f32) -> f32 {
     return f_0 + (1.0 - f_0) * m_2 * m_2 * m;
 }
 
+fn fresnel_conductor(cos_i: f32, n: vec3<f32>, k: vec3<f32>) -> vec3<f32> {
+    let c = clamp(cos_i, 0.0, 1.0);
+    let c_2 = c * c;
+    let s_2 = 1.0 - c_2;
+    let d = (n - k) * (n + k) - s_2;
+    let q = 2.0 * n * k;
+    let root = sqrt(d * d + q * q);
+    let a_2 = select(0.5 * q * q / max(root - d, vec3(1e-12)), 0.5 * (root + d), d >= vec3(0.0));
+    let x = root + c_2;
+    let y = 2.0 * sqrt(a_2) * c;
+    let r_s = max(x - y, vec3(0.0)) / max(x + y, vec3(1e-12));
+    let v = c_2 * root + s_2 * s_2;
+    let w = y * s_2;
+    return r_s * 0.5 * (1.0 + max(v - w, vec3(0.0)) / max(v + w, vec3(1e-12)));
+}
+
 // Twins of src/optics/microfacet.rs
 
 fn d_ggx(sin2_h: f32, alpha: f32) -> f32 {
@@ -47,6 +63,21 @@ fn v_smith(mu_i: f32, mu_o: f32, alpha: f32) -> f32 {
     let a_2 = alpha * alpha;
     let l_i = mu_o * sqrt(a_2 + (1.0 - a_2) * mu_i * mu_i);
     let l_o = mu_i * sqrt(a_2 + (1.0 - a_2) * mu_o * mu_o);
+    return 0.5 / (l_i + l_o);
+}
+
+fn d_ggx_anisotropic(h_x: f32, h_y: f32, alpha_x: f32, alpha_y: f32) -> f32 {
+    let x = h_x / alpha_x;
+    let y = h_y / alpha_y;
+    let cos2_h = max(1.0 - h_x * h_x - h_y * h_y, 0.0);
+    let d = x * x + y * y + cos2_h;
+    return INV_PI / (alpha_x * alpha_y * d * d);
+}
+
+fn v_smith_anisotropic(l: vec3<f32>, v: vec3<f32>, alpha_x: f32, alpha_y: f32) -> f32 {
+    let scale = vec3(alpha_x, alpha_y, 1.0);
+    let l_i = max(v.z, MU_MIN) * length(l * scale);
+    let l_o = max(l.z, MU_MIN) * length(v * scale);
     return 0.5 / (l_i + l_o);
 }
 
@@ -66,6 +97,7 @@ struct InterfaceMean {
     compensation: f32,
     t_mean: f32,
     capture: f32,
+    floor: f32,
 }
 
 const ALPHA_FIT_MIN: f32 = 0.1;
@@ -77,6 +109,7 @@ struct InterfaceTable {
     compensation: vec4<f32>,
     t_mean: vec4<f32>,
     capture: vec4<f32>,
+    floor: vec4<f32>,
 }
 
 // The table at one roughness: what interface_at needs for every direction of a pixel.
@@ -119,6 +152,7 @@ fn interface_mean_at(table: InterfaceTable, p: vec4<f32>) -> InterfaceMean {
         max(dot(table.compensation, p), 0.0),
         dot(table.t_mean, p),
         dot(table.capture, p),
+        max(dot(table.floor, p), 0.0),
     );
 }
 
@@ -130,6 +164,7 @@ struct Surface {
     eta: f32,
     f_normal: f32,
     specular: f32,
+    f_capture: f32,
 }
 
 struct Facing {
@@ -162,8 +197,17 @@ fn brdf_draft(s: Surface, g: Facing) -> vec3<f32> {
     return s.albedo * INV_PI + vec3(s.specular * lobe);
 }
 
+const CAPTURE_SIN2_H: f32 = 0.14644660940673;
+const FRAC_1_SQRT_2: f32 = 0.70710678118655;
+
+fn capture_floor(s: Surface, mean: InterfaceMean) -> f32 {
+    let lobe = d_ggx(CAPTURE_SIN2_H, s.alpha) * v_smith(FRAC_1_SQRT_2, 1.0, s.alpha);
+    return PI * s.specular * lobe * s.f_capture + mean.floor;
+}
+
 fn albedo_of(s: Surface, mean: InterfaceMean) -> vec3<f32> {
-    return min(s.albedo, vec3(1.0 / (mean.t_mean * mean.capture)));
+    let most = vec3(1.0 / (mean.t_mean * mean.capture));
+    return clamp(s.albedo - capture_floor(s, mean), vec3(0.0), most);
 }
 
 fn brdf_gallery(
@@ -173,13 +217,237 @@ fn brdf_gallery(
     at_o: Interface,
     mean: InterfaceMean,
 ) -> vec3<f32> {
+    let diffuse = at_i.t * at_o.t * mean.capture * INV_PI;
+    return albedo_of(s, mean) * diffuse + vec3(brdf_gallery_specular(s, g, at_i, at_o, mean));
+}
+
+fn brdf_gallery_specular(
+    s: Surface,
+    g: Facing,
+    at_i: Interface,
+    at_o: Interface,
+    mean: InterfaceMean,
+) -> f32 {
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_dielectric(g.cos_d, s.eta);
-    let albedo = albedo_of(s, mean);
-    let diffuse = at_i.t * at_o.t * mean.capture * INV_PI;
-    let compensated = mean.compensation * at_i.lost * at_o.lost;
-    return albedo * diffuse + vec3(s.specular * lobe + compensated);
+    return s.specular * lobe + mean.compensation * at_i.lost * at_o.lost;
+}
+
+// Twins of src/optics/ink.rs
+
+const DEPTH_MAX: f32 = 20.0;
+const SHARE_MIN: f32 = 1e-20;
+
+// Coefficients over powers of u (rgb); the last is over powers of w.
+struct Film {
+    excess: array<vec4<f32>, 7>,
+    internal: array<vec4<f32>, 7>,
+    diffuse_path: vec4<f32>,
+}
+
+fn inner_cosine(mu: f32, eta: f32) -> f32 {
+    return sqrt(max(1.0 - max(1.0 - mu * mu, 0.0) / (eta * eta), 0.0));
+}
+
+fn optical_depth(film: Film, capture_path: f32, share: vec3<f32>) -> vec3<f32> {
+    let x = clamp(share, vec3(SHARE_MIN), vec3(1.0));
+    let u = sqrt(x);
+    let c = film.excess;
+    let excess = (((((c[6].xyz * u + c[5].xyz) * u + c[4].xyz) * u + c[3].xyz) * u + c[2].xyz) * u
+        + c[1].xyz) * u + c[0].xyz;
+    return clamp((-log(x) - excess) / capture_path, vec3(0.0), vec3(DEPTH_MAX));
+}
+
+fn internal_reflectance(film: Film, share: vec3<f32>) -> vec3<f32> {
+    let u = sqrt(clamp(share, vec3(0.0), vec3(1.0)));
+    let c = film.internal;
+    let rho = (((((c[6].xyz * u + c[5].xyz) * u + c[4].xyz) * u + c[3].xyz) * u + c[2].xyz) * u
+        + c[1].xyz) * u + c[0].xyz;
+    return clamp(rho, vec3(0.0), vec3(1.0));
+}
+
+fn diffuse_share(film: Film, tau: vec3<f32>) -> vec3<f32> {
+    let w = tau / (1.0 + tau);
+    let c = film.diffuse_path;
+    return exp(-tau * (c.x + w * (c.y + w * (c.z + w * c.w))));
+}
+
+fn beyond_capture(tau: vec3<f32>, capture_path: f32, inner_i: f32, inner_o: f32) -> vec3<f32> {
+    return exp(-tau * (1.0 / inner_i + 1.0 / inner_o - capture_path));
+}
+
+// Twins of src/optics/study.rs
+
+struct Split {
+    kappa: vec3<f32>,
+    mean: f32,
+    at_capture: vec3<f32>,
+    depth: f32,
+    forward_share: f32,
+    g_forward: f32,
+    g_backward: f32,
+    // s0 of the film, where there is room for it.
+    capture_path: f32,
+}
+
+struct Through {
+    reflected: vec3<f32>,
+    transmitted: vec3<f32>,
+    ballistic: vec3<f32>,
+    flat_share: vec3<f32>,
+}
+
+struct Particle {
+    n: vec3<f32>,
+    alpha: f32,
+    k: vec3<f32>,
+    covered: f32,
+}
+
+struct Shares {
+    paper: vec3<f32>,
+    gloss: f32,
+    particles: vec3<f32>,
+}
+
+fn crossing(
+    r: vec3<f32>,
+    t: vec3<f32>,
+    rho_f: vec3<f32>,
+    rho_b: vec3<f32>,
+    eta: f32,
+) -> vec3<f32> {
+    let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
+    return t / (eta * eta * max(passes, vec3(1e-6)));
+}
+
+fn phase_lobe(g: f32, cos_deflection: f32) -> f32 {
+    let d = max(1.0 + g * g - 2.0 * g * cos_deflection, 1e-6);
+    return 0.25 * INV_PI * (1.0 - g * g) / (d * sqrt(d));
+}
+
+fn phase_function(split: Split, cos_deflection: f32) -> f32 {
+    return split.forward_share * phase_lobe(split.g_forward, cos_deflection)
+        + (1.0 - split.forward_share) * phase_lobe(split.g_backward, cos_deflection);
+}
+
+fn single_scatter(split: Split, eta: f32, g: Facing, inner_i: f32, inner_o: f32) -> f32 {
+    let l_dot_v = 2.0 * g.cos_d * g.cos_d - 1.0;
+    let tangential = (l_dot_v - g.mu_i * g.mu_o) / (eta * eta);
+    let cos_deflection = clamp(-tangential - inner_i * inner_o, -1.0, 1.0);
+    let path = split.depth * (1.0 / inner_i + 1.0 / inner_o);
+    // The difference cancels for thin films.
+    let left = select(1.0 - exp(-path), path * (1.0 - 0.5 * path), path < 1e-3);
+    return phase_function(split, cos_deflection) * left / (inner_i + inner_o);
+}
+
+fn split_shape(split: Split, q: f32) -> vec3<f32> {
+    return max(1.0 + split.kappa * (q - split.mean), vec3(0.0)) * split.at_capture;
+}
+
+// `shares` are particle_shares of the spot: the same for every lamp.
+fn brdf_study(
+    s: Surface,
+    g: Facing,
+    at_i: Interface,
+    at_o: Interface,
+    mean: InterfaceMean,
+    split: Split,
+    depth: vec3<f32>,
+    particle: Particle,
+    shares: Shares,
+) -> vec3<f32> {
+    let inner_i = inner_cosine(g.mu_i, s.eta);
+    let inner_o = inner_cosine(g.mu_o, s.eta);
+    let q = single_scatter(split, s.eta, g, inner_i, inner_o);
+    let through_ink = beyond_capture(depth, split.capture_path, inner_i, inner_o);
+    let coupled = at_i.t * at_o.t * mean.capture;
+    let paper = shares.paper * coupled * through_ink * split_shape(split, q);
+    let gloss = brdf_gallery_specular(s, g, at_i, at_o, mean) * (1.0 - particle.covered);
+    return (paper + shares.particles) * INV_PI + vec3(gloss);
+}
+
+// The light that a spot's particles mirror.
+fn brdf_particles(shares: Shares, particle: Particle, g: Facing) -> vec3<f32> {
+    return shares.gloss * particle_lobe(particle, g);
+}
+
+fn particle_lobe(particle: Particle, g: Facing) -> vec3<f32> {
+    let facets = d_ggx(g.sin2_h, particle.alpha) * v_smith(g.mu_i, g.mu_o, particle.alpha);
+    return fresnel_conductor(g.cos_d, particle.n, particle.k) * facets;
+}
+
+fn particle_capture(particle: Particle) -> vec3<f32> {
+    let cos_d = sqrt(0.5 + 0.5 * FRAC_1_SQRT_2);
+    return PI * particle_lobe(particle, Facing(FRAC_1_SQRT_2, 1.0, cos_d, CAPTURE_SIN2_H));
+}
+
+fn particle_shares(
+    s: Surface,
+    mean: InterfaceMean,
+    bare: vec3<f32>,
+    particle: Particle,
+) -> Shares {
+    let uncovered = 1.0 - particle.covered;
+    let lit = max(s.albedo - capture_floor(s, mean) * uncovered, vec3(0.0));
+    let paper = min(lit, bare * uncovered);
+    let rest = lit - paper;
+    let mirrored = particle_capture(particle) * particle.covered;
+    let bound = rest / max(mirrored, vec3(1e-6));
+    let gloss = clamp(min(bound.x, min(bound.y, bound.z)), 0.0, 1.0);
+    return Shares(paper, gloss * particle.covered, max(rest - mirrored * gloss, vec3(0.0)));
+}
+
+struct Seen {
+    depth_f: vec3<f32>,
+    clear: f32,
+    depth_b: vec3<f32>,
+    rho_f: vec3<f32>,
+    rho_b: vec3<f32>,
+}
+
+// T0 of the spot; its R0 is what the sheet gives back of both, less this.
+fn spot_transmitted(through: Through, clear: f32) -> vec3<f32> {
+    return min(through.transmitted * clear, through.reflected + through.transmitted);
+}
+
+fn spot_crossing(through: Through, seen: Seen, eta: f32) -> vec3<f32> {
+    let t = spot_transmitted(through, seen.clear);
+    let r = through.reflected + through.transmitted - t;
+    return crossing(r, t, seen.rho_f, seen.rho_b, eta);
+}
+
+fn through_study(
+    film: Film,
+    through: Through,
+    seen: Seen,
+    at_o: Interface,
+    mean: InterfaceMean,
+    mu_o: f32,
+    eta: f32,
+) -> vec3<f32> {
+    let inner_o = inner_cosine(max(mu_o, MU_MIN), eta);
+    let front = at_o.t * exp(-seen.depth_f / inner_o);
+    let scattered = spot_crossing(through, seen, eta)
+        * diffuse_share(film, seen.depth_b)
+        * mean.t_mean;
+    let straight = at_o.t * exp(-(seen.depth_b + through.ballistic) / inner_o);
+    return front * (scattered + straight);
+}
+
+fn btdf_study(
+    through: Through,
+    seen: Seen,
+    g: Facing,
+    at_i: Interface,
+    at_o: Interface,
+    eta: f32,
+) -> vec3<f32> {
+    let inner_i = inner_cosine(g.mu_i, eta);
+    let inner_o = inner_cosine(g.mu_o, eta);
+    let inks = exp(-seen.depth_f / inner_o - seen.depth_b / inner_i);
+    return inks * spot_crossing(through, seen, eta) * (at_i.t * at_o.t * INV_PI);
 }
 
 // Twins of src/optics/lamp.rs. A lamp of any shape in one layout, narrowed on the CPU by

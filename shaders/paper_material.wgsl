@@ -4,9 +4,12 @@
 
 #import "embedded://recto/paper_bsdf.wgsl"::{
     ALPHA_MIN, INV_PI, MU_MIN,
-    Facing, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Surface,
-    albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing, fit_powers, interface_at,
-    interface_mean_at, interface_row, light_distant, light_punctual, light_rectangle,
+    Facing, Film, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Particle, Seen,
+    Shares, Split, Surface, Through,
+    albedo_of, brdf_draft, brdf_gallery, brdf_lambert, capture_floor, brdf_study, btdf_study,
+    diffuse_share, facing, fit_powers, inner_cosine, interface_at, interface_mean_at,
+    interface_row, internal_reflectance, light_distant, light_punctual, light_rectangle,
+    optical_depth, particle_shares, through_study,
 }
 
 // Largest value a half-float target holds.
@@ -56,6 +59,18 @@ struct Paper {
     overlays: array<MapPlace, 16>,
     // Nodes and weights (xy) of the rules of 2 to 7 points.
     quadrature: array<vec4<f32>, 27>,
+    // What the side is made of: the study tier, and light through the sheet.
+    film: Film,
+    split: Split,
+    through: Through,
+    // Diffuse part of the bare paper's albedo on the side that is seen, and on the other.
+    lit_bare: vec3<f32>,
+    f_capture: f32,
+    other_bare: vec3<f32>,
+    // One over the mean of the transmission map.
+    clear_scale: f32,
+    other_place: MapPlace,
+    transmission_place: MapPlace,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paper: Paper;
@@ -64,6 +79,8 @@ struct Paper {
 @group(#{MATERIAL_BIND_GROUP}) @binding(3) var normal_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(4) var roughness_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(5) var outline_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(9) var transmission_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(10) var other_map: texture_2d<f32>;
 #ifdef OVERLAYS
 @group(#{MATERIAL_BIND_GROUP}) @binding(16) var overlay_map_a: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(17) var overlay_map_b: texture_2d<f32>;
@@ -191,6 +208,19 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     alpha = textureSample(roughness_map, map_sampler, map_uv(paper.roughness_place, in)).x;
     alpha = clamp(alpha, ALPHA_MIN, 1.0);
 #endif
+#ifdef TRANSMISSION
+    var other_albedo = paper.other_bare;
+#ifdef OTHER_ALBEDO
+    other_albedo = textureSample(other_map, map_sampler, place_uv(paper.other_place, in.side)).rgb;
+#endif
+    var clear = 1.0;
+#ifdef TRANSMISSION_MAP
+    let clearness = textureSample(
+        transmission_map, map_sampler, place_uv(paper.transmission_place, in.side),
+    ).x;
+    clear = clearness * paper.clear_scale;
+#endif
+#endif
     var coverage = 1.0;
 #ifdef OUTLINE
     coverage = textureSample(outline_map, map_sampler, map_uv(paper.outline_place, in)).x;
@@ -262,8 +292,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #else
     let v = normalize(paper.eye.xyz - in.local);
 #endif
-    let s = Surface(albedo, alpha, paper.eta, paper.f_normal, paper.specular);
-#ifdef TIER_GALLERY
+    let s = Surface(albedo, alpha, paper.eta, paper.f_normal, paper.specular, paper.f_capture);
+#ifdef COUPLED
 #ifdef ROUGHNESS_MAP
     let powers = fit_powers(alpha);
 #else
@@ -272,8 +302,49 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let row = interface_row(paper.interface_table, powers);
     let mean = interface_mean_at(paper.interface_table, powers);
     let at_o = interface_at(row, max(dot(n, v), MU_MIN));
+    let lit = albedo_of(s, mean);
+#endif
+#ifdef TIER_STUDY
+    let depth = optical_depth(paper.film, paper.split.capture_path, lit / paper.lit_bare);
+    let particle = Particle(vec3(1.0), 1.0, vec3(0.0), 0.0);
+    let shares = Shares(lit, 0.0, vec3(0.0));
+#endif
+#ifdef TRANSMISSION
+    // Both inks by their photographs, over the bare paper's.
+#ifdef COUPLED
+    let share_f = lit / paper.lit_bare;
+    let share_b = max(other_albedo - capture_floor(s, mean), vec3(0.0)) / paper.other_bare;
+#else
+    let share_f = albedo / paper.lit_bare;
+    let share_b = other_albedo / paper.other_bare;
+#endif
+#ifdef TIER_STUDY
+    let baked = vec3(1.0);
+    let seen = Seen(
+        depth,
+        clear,
+        optical_depth(paper.film, paper.split.capture_path, share_b),
+        internal_reflectance(paper.film, share_f),
+        internal_reflectance(paper.film, share_b),
+    );
+#else
+    // Light crosses each ink once, where the photograph saw it crossed twice.
+    let baked = sqrt(clamp(share_f, vec3(0.0), vec3(1.0)) * clamp(share_b, vec3(0.0), vec3(1.0)));
+#ifdef COUPLED
+    let r_i = vec3(1.0 - mean.t_mean / (s.eta * s.eta));
+    let seen = Seen(vec3(0.0), clear, vec3(0.0), r_i, r_i);
+#endif
+#endif
 #endif
     var radiance = vec3(0.0);
+#ifdef TRANSMISSION
+#ifdef COUPLED
+    let crossed = through_study(paper.film, paper.through, seen, at_o, mean, dot(n, v), s.eta);
+#else
+    let crossed = paper.through.flat_share * clear;
+#endif
+    radiance += crossed * baked * paper.light_table;
+#endif
 #ifdef ONE_LAMP
     {
         let light = paper.lights[0];
@@ -313,13 +384,34 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef TIER_GALLERY
                 let f = brdf_gallery(s, facing(n, incidence.l, v), interface_at(row, mu_i), at_o, mean);
 #endif
+#ifdef TIER_STUDY
+                let f = brdf_study(
+                    s, facing(n, incidence.l, v), interface_at(row, mu_i), at_o, mean, paper.split,
+                    depth, particle, shares,
+                );
+#endif
                 radiance += f * incidence.e * mu_i;
             }
+#ifdef TRANSMISSION
+#ifdef COUPLED
+            let behind = -dot(geometric, incidence.l);
+            if behind > 0.0 {
+                let g = Facing(max(behind, MU_MIN), max(dot(n, v), MU_MIN), 0.0, 0.0);
+                let f = btdf_study(paper.through, seen, g, interface_at(row, behind), at_o, s.eta);
+                radiance += f * baked * incidence.e * behind;
+            }
+#endif
+#endif
         }
     }
 #ifdef AMBIENT
-#ifdef TIER_GALLERY
-    let diffuse = albedo_of(s, mean) * (at_o.t * mean.t_mean * mean.capture);
+#ifdef COUPLED
+    var diffuse = lit * (at_o.t * mean.t_mean * mean.capture);
+#ifdef TIER_STUDY
+    // Half of the path is that of diffuse light.
+    let way_out = depth * (1.0 / inner_cosine(max(dot(n, v), MU_MIN), s.eta) - paper.split.capture_path);
+    diffuse *= diffuse_share(paper.film, depth) * exp(-way_out);
+#endif
     radiance += (diffuse + vec3(1.0 - at_o.t)) * paper.ambient * INV_PI;
 #else
     radiance += brdf_lambert(s) * paper.ambient;

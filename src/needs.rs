@@ -40,6 +40,12 @@ pub struct Terms {
     pub one_lamp: bool,
     /// The eye is in one direction from everywhere.
     pub parallel_eye: bool,
+    /// Light comes through the sheet.
+    pub transmission: bool,
+    /// A map says how much of it, from place to place.
+    pub transmission_map: bool,
+    /// The other side has a picture, whose ink that light crosses.
+    pub other_albedo: bool,
     /// How many overlays lie on the side.
     pub overlays: u32,
 }
@@ -54,6 +60,9 @@ pub enum MapUse {
     NormalFromHeight(HeightMap, DVec2),
     Roughness(RoughnessMap),
     Outline(MapFile),
+    Transmission(MapFile),
+    /// What the other side shows, for light that comes through it.
+    OtherAlbedo(ColourMap),
     Overlay(Overlay),
 }
 
@@ -65,7 +74,8 @@ impl MapUse {
             Self::Normal(map) => &map.file,
             Self::NormalFromHeight(map, _) => &map.file,
             Self::Roughness(map) => &map.file,
-            Self::Outline(file) => file,
+            Self::Outline(file) | Self::Transmission(file) => file,
+            Self::OtherAlbedo(map) => &map.file,
             Self::Overlay(overlay) => &overlay.file,
         }
     }
@@ -77,7 +87,8 @@ impl MapUse {
             Self::Normal(map) => &mut map.file,
             Self::NormalFromHeight(map, _) => &mut map.file,
             Self::Roughness(map) => &mut map.file,
-            Self::Outline(file) => file,
+            Self::Outline(file) | Self::Transmission(file) => file,
+            Self::OtherAlbedo(map) => &mut map.file,
             Self::Overlay(overlay) => &mut overlay.file,
         }
     }
@@ -90,6 +101,8 @@ impl MapUse {
             Self::NormalFromHeight(..) => "normal from height",
             Self::Roughness(_) => "roughness",
             Self::Outline(_) => "outline",
+            Self::Transmission(_) => "transmission",
+            Self::OtherAlbedo(_) => "albedo of the other side",
             Self::Overlay(_) => "overlay",
         }
     }
@@ -98,9 +111,9 @@ impl MapUse {
     pub fn gpu_bytes(&self) -> u64 {
         let [width, height] = self.file().size.map(u64::from);
         let texel = match self {
-            Self::Albedo(_) | Self::Overlay(_) => 8,
+            Self::Albedo(_) | Self::OtherAlbedo(_) | Self::Overlay(_) => 8,
             Self::Normal(_) | Self::NormalFromHeight(..) => 4,
-            Self::Roughness(_) => 2,
+            Self::Roughness(_) | Self::Transmission(_) => 2,
             Self::Outline(_) => 1,
         };
         width * height * texel * 4 / 3
@@ -220,6 +233,9 @@ fn side_needs(
         outline.uv_from_side *= drawing.recto_from(name);
         maps.push(MapUse::Outline(outline));
     }
+    transmission(
+        exhibit, scene, drawing, name, &mut terms, &mut maps, &mut say,
+    );
     // The mesh of a curled sheet ends where the sheet does, and an outline cuts within it; a flat
     // one reaches further, for the smooth step.
     terms.edge = !(terms.curved && terms.outline);
@@ -237,7 +253,12 @@ fn side_needs(
             }
         }
     }
-    let mut of_side = maps.iter().filter(|map| !matches!(map, MapUse::Overlay(_)));
+    let mut of_side = maps.iter().filter(|map| {
+        !matches!(
+            map,
+            MapUse::Overlay(_) | MapUse::Transmission(_) | MapUse::OtherAlbedo(_)
+        )
+    });
     let first = of_side.next().map(|map| map.file().uv_from_side);
     terms.shared_uv = of_side.all(|map| Some(map.file().uv_from_side) == first);
     if tier == Tier::Draft
@@ -251,6 +272,42 @@ fn side_needs(
         side: name,
         terms,
         maps,
+    }
+}
+
+/// Light through the sheet: from a light table behind it.
+fn transmission(
+    exhibit: &Exhibit,
+    scene: &Scene,
+    drawing: &Drawing,
+    name: SideName,
+    terms: &mut Terms,
+    maps: &mut Vec<MapUse>,
+    say: &mut impl FnMut(String),
+) {
+    let behind = |&lamp: &usize| exhibit.lamps[lamp].kind.is_behind();
+    if !scene.lamps.iter().any(behind) {
+        return;
+    }
+    say("light through the sheet, from the light table".into());
+    terms.transmission = true;
+    if let Some(map) = &drawing.transmission {
+        let mut map = map.clone();
+        map.uv_from_side *= drawing.recto_from(name);
+        say("transmission map, for the paper's structure".into());
+        terms.transmission_map = true;
+        maps.push(MapUse::Transmission(map));
+    }
+    if let Some(other) = drawing.side_in_state(name.other(), scene.state) {
+        let mut albedo = other.albedo.clone();
+        // Turning the sheet over twice leads back: either way is the same.
+        albedo.file.uv_from_side *= drawing.recto_from(SideName::Verso);
+        say(format!(
+            "the {}'s ink, through the paper",
+            name.other().word()
+        ));
+        terms.other_albedo = true;
+        maps.push(MapUse::OtherAlbedo(albedo));
     }
 }
 

@@ -12,6 +12,7 @@
 //!
 //! Rows run from the top of the picture, pixels from its left, channels interleaved.
 
+mod bare;
 mod colour_map;
 mod decode;
 pub mod encode;
@@ -28,6 +29,7 @@ pub mod surface;
 
 use serde::{Deserialize, Serialize};
 
+pub use bare::{bare_albedo, mean_of};
 pub use error::MapError;
 pub use header::{Header, probe, verify, verify_colour};
 pub use legend::{

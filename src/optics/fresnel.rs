@@ -29,6 +29,32 @@ pub fn fresnel_schlick(cos_i: f64, f_0: f64) -> f64 {
     f_0 + (1.0 - f_0) * m2 * m2 * m
 }
 
+/// Unpolarised Fresnel reflectance of a material of index `n` + i`k` in air, exact.
+///
+/// `cos_i` in [0, 1], `n` > 0, `k` ≥ 0. With `k` = 0 it is [`fresnel_dielectric`].
+/// Source: Born & Wolf, §14.2, in the arrangement of Lazányi & Szirmay-Kalos 2005, eq. 3 and 4.
+pub fn fresnel_conductor(cos_i: f64, n: f64, k: f64) -> f64 {
+    let c = cos_i.clamp(0.0, 1.0);
+    let c2 = c * c;
+    let s2 = 1.0 - c2;
+    let d = (n - k) * (n + k) - s2;
+    let q = 2.0 * n * k;
+    let a2_plus_b2 = (d * d + q * q).sqrt();
+    // a² = (√(d² + q²) + d)/2, without cancellation where d < 0.
+    let a2 = if d >= 0.0 {
+        0.5 * (a2_plus_b2 + d)
+    } else {
+        0.5 * q * q / (a2_plus_b2 - d).max(1e-12)
+    };
+    let x = a2_plus_b2 + c2;
+    let y = 2.0 * a2.sqrt() * c;
+    // Tiny where light grazes: both are 1 there.
+    let r_s = (x - y).max(0.0) / (x + y).max(1e-12);
+    let v = c2 * a2_plus_b2 + s2 * s2;
+    let w = y * s2;
+    r_s * 0.5 * (1.0 + (v - w).max(0.0) / (v + w).max(1e-12))
+}
+
 /// Reflectance at normal incidence of a dielectric of index ratio `eta`.
 pub fn normal_reflectance(eta: f64) -> f64 {
     let r = (eta - 1.0) / (eta + 1.0);
@@ -38,6 +64,31 @@ pub fn normal_reflectance(eta: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn conductors_meet_their_closed_forms() {
+        let normal = |n: f64, k: f64| ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k);
+        for (n, k) in [
+            (0.06, 3.6),
+            (1.83, 3.4),
+            (3.32, 0.5),
+            (1.5, 0.0),
+            (1e-2, 20.0),
+        ] {
+            assert!((fresnel_conductor(1.0, n, k) - normal(n, k)).abs() < 1e-12);
+            assert!((fresnel_conductor(0.0, n, k) - 1.0).abs() < 1e-9);
+        }
+        for cos_i in [0.01, 0.3, 0.5547, 0.9] {
+            let (metal, glass) = (
+                fresnel_conductor(cos_i, 1.5, 0.0),
+                fresnel_dielectric(cos_i, 1.5),
+            );
+            assert!((metal - glass).abs() < 1e-12, "{cos_i}: {metal} {glass}");
+        }
+        // Silver hardly has a pseudo-Brewster dip, black chalk has one.
+        assert!(fresnel_conductor(0.2, 0.06, 3.6) > 0.95);
+        assert!(fresnel_conductor(0.55, 1.56, 0.46) < fresnel_conductor(0.1, 1.56, 0.46));
+    }
 
     #[test]
     fn closed_forms_of_the_exact_reflectance() {

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use glam::DVec3;
+
 use super::fresnel::fresnel_dielectric;
 
 /// Below this roughness the distribution is too narrow for f32; it is the floor everywhere.
@@ -24,6 +26,26 @@ pub fn v_smith(mu_i: f64, mu_o: f64, alpha: f64) -> f64 {
     let a2 = alpha * alpha;
     let l_i = mu_o * (a2 + (1.0 - a2) * mu_i * mu_i).sqrt();
     let l_o = mu_i * (a2 + (1.0 - a2) * mu_o * mu_o).sqrt();
+    0.5 / (l_i + l_o)
+}
+
+/// Anisotropic GGX in sr⁻¹, from the half vector's components along x and y of the surface
+/// frame; `alpha_x` and `alpha_y` are the roughnesses along these (Heitz 2014, eq. 85). Equal
+/// roughnesses give [`d_ggx`].
+pub fn d_ggx_anisotropic(h_x: f64, h_y: f64, alpha_x: f64, alpha_y: f64) -> f64 {
+    let (x, y) = (h_x / alpha_x, h_y / alpha_y);
+    let cos2_h = (1.0 - h_x * h_x - h_y * h_y).max(0.0);
+    let d = x * x + y * y + cos2_h;
+    1.0 / (PI * alpha_x * alpha_y * d * d)
+}
+
+/// Visibility of anisotropic height-correlated Smith shadowing, from the unit directions in the
+/// surface frame: √(αx²x² + αy²y² + z²) takes the place of √(α² + (1 − α²)μ²) (Heitz 2014,
+/// eq. 86 and 99).
+pub fn v_smith_anisotropic(l: DVec3, v: DVec3, alpha_x: f64, alpha_y: f64) -> f64 {
+    let scale = DVec3::new(alpha_x, alpha_y, 1.0);
+    let l_i = v.z.max(MU_MIN) * (l * scale).length();
+    let l_o = l.z.max(MU_MIN) * (v * scale).length();
     0.5 / (l_i + l_o)
 }
 
@@ -119,6 +141,35 @@ mod tests {
             }
             assert!((sum - 1.0).abs() < 1e-3, "alpha {alpha}: {sum}");
         }
+    }
+
+    #[test]
+    fn equal_roughnesses_are_isotropic_and_unequal_ones_still_project_to_the_surface() {
+        let (l, v) = (
+            DVec3::new(0.6, 0.0, 0.8),
+            DVec3::new(-0.2, 0.3, 0.9).normalize(),
+        );
+        let h = (l + v).normalize();
+        for alpha in [1e-3, 0.2, 1.0] {
+            let sin2_h = h.x * h.x + h.y * h.y;
+            let d = d_ggx_anisotropic(h.x, h.y, alpha, alpha) / d_ggx(sin2_h, alpha);
+            assert!((d - 1.0).abs() < 1e-9, "{alpha}: {d}");
+            let visible = v_smith_anisotropic(l, v, alpha, alpha) / v_smith(l.z, v.z, alpha);
+            assert!((visible - 1.0).abs() < 1e-9, "{alpha}: {visible}");
+        }
+        let steps = 1000;
+        let mut sum = 0.0;
+        for i in 0..steps {
+            for j in 0..steps {
+                let sin2 = (f64::from(i) + 0.5) / f64::from(steps);
+                let (sin, cos) = (2.0 * PI * (f64::from(j) + 0.5) / f64::from(steps)).sin_cos();
+                let r = sin2.sqrt();
+                sum += d_ggx_anisotropic(r * cos, r * sin, 0.5, 0.2);
+            }
+        }
+        // dω cosθ = dφ d(sin²θ)/2.
+        let sum = sum * PI / f64::from(steps * steps);
+        assert!((sum - 1.0).abs() < 1e-3, "{sum}");
     }
 
     #[test]

@@ -14,10 +14,13 @@
 //! the twin's name and order.
 
 pub mod fresnel;
+pub mod ink;
 pub mod lamp;
 pub mod lamp_units;
 pub mod medium;
 pub mod microfacet;
 pub mod quadrature;
+pub mod slab;
+pub mod study;
 pub mod table;
 pub mod tier;

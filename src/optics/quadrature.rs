@@ -1,6 +1,8 @@
 //! Gauss-Legendre rules: few points for smooth integrands, exact for polynomials of degree
 //! 2n − 1.
 
+use std::f64::consts::PI;
+
 /// Points along each edge that a rectangle can be sampled at.
 pub const GRIDS: std::ops::RangeInclusive<u32> = 2..=7;
 
@@ -40,6 +42,33 @@ pub fn gauss_legendre(grid: u32, i: u32) -> [f64; 2] {
     GAUSS_LEGENDRE[(grid * (grid - 1) / 2 - 1 + i) as usize]
 }
 
+/// Value at `x` of a polynomial, its coefficients from the constant upwards (Horner).
+pub fn polynomial(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+}
+
+/// Chebyshev nodes on [0, 1], where a polynomial strays least between them.
+pub fn chebyshev<const N: usize>() -> [f64; N] {
+    std::array::from_fn(|i| 0.5 - 0.5 * (PI * (i as f64 + 0.5) / N as f64).cos())
+}
+
+/// Coefficients of the polynomial through (`nodes`, `values`): Newton's divided differences,
+/// then expanded (Björck & Pereyra 1970).
+pub fn through<const N: usize>(nodes: &[f64; N], values: &[f64; N]) -> [f64; N] {
+    let mut c = *values;
+    for k in 0..N {
+        for i in (k + 1..N).rev() {
+            c[i] = (c[i] - c[i - 1]) / (nodes[i] - nodes[i - k - 1]);
+        }
+    }
+    for k in (0..N).rev() {
+        for i in k..N - 1 {
+            c[i] -= nodes[k] * c[i + 1];
+        }
+    }
+    c
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,6 +96,16 @@ mod tests {
             }
             let beyond = 2 * grid as i32;
             assert!((integral(beyond) - 1.0 / f64::from(beyond + 1)).abs() > 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_polynomial_goes_through_its_nodes() {
+        let nodes = chebyshev::<7>();
+        let cubic = |x: f64| 1.0 - 2.0 * x + 0.5 * x * x * x;
+        let c = through(&nodes, &nodes.map(cubic));
+        for (found, expected) in c.iter().zip([1.0, -2.0, 0.0, 0.5, 0.0, 0.0, 0.0]) {
+            assert!((found - expected).abs() < 1e-11, "{c:?}");
         }
     }
 }

@@ -8,7 +8,10 @@
 
 use std::f64::consts::PI;
 
-use super::microfacet::directional_albedo;
+use super::{
+    microfacet::directional_albedo,
+    quadrature::{chebyshev, polynomial, through},
+};
 
 /// Coefficients over powers of x = √μ.
 pub const MU_TERMS: usize = 7;
@@ -21,6 +24,9 @@ pub const ALPHA_TERMS: usize = 4;
 pub const ALPHA_FIT_MIN: f64 = 0.1;
 /// Steps of the integral at each node, in both directions.
 const STEPS: u32 = 64;
+
+/// Cosine of the light in reproduction photography.
+const OBLIQUE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// A polynomial in s.
 pub type AlphaPolynomial = [f64; ALPHA_TERMS];
@@ -35,6 +41,7 @@ pub struct InterfaceTable {
     pub compensation: AlphaPolynomial,
     pub t_mean: AlphaPolynomial,
     pub capture: AlphaPolynomial,
+    pub floor: AlphaPolynomial,
 }
 
 /// The interface at one cosine and roughness.
@@ -56,6 +63,8 @@ pub struct InterfaceMean {
     /// 1/(t(cos 45°)·t(1)): undoes the interface in the geometry of reproduction photography,
     /// so that a photographed albedo is what 45°/0° shows.
     pub capture: f64,
+    /// What the compensation adds to an albedo photographed at 45°/0°: π k lost(45°) lost(0°).
+    pub floor: f64,
 }
 
 impl InterfaceTable {
@@ -80,6 +89,7 @@ impl InterfaceTable {
             compensation: over_s(&|row| row.mean.compensation),
             t_mean: over_s(&|row| row.mean.t_mean),
             capture: over_s(&|row| row.mean.capture),
+            floor: over_s(&|row| row.mean.floor),
         }
     }
 
@@ -93,6 +103,7 @@ impl InterfaceTable {
             compensation: constant(row.mean.compensation),
             t_mean: constant(row.mean.t_mean),
             capture: constant(row.mean.capture),
+            floor: constant(row.mean.floor),
         }
     }
 
@@ -120,6 +131,7 @@ impl InterfaceTable {
             compensation: polynomial(&self.compensation, s).max(0.0),
             t_mean: polynomial(&self.t_mean, s),
             capture: polynomial(&self.capture, s),
+            floor: polynomial(&self.floor, s).max(0.0),
         }
     }
 }
@@ -158,12 +170,13 @@ impl Row {
             let one = if i == 0 { 1.0 } else { 0.0 };
             one - specular * (single[i] + f_ms * lost[i])
         });
-        let oblique = polynomial(&t, std::f64::consts::FRAC_1_SQRT_2.sqrt());
+        let oblique = polynomial(&t, OBLIQUE.sqrt());
         let capture = 1.0 / (oblique * polynomial(&t, 1.0));
         let mean = InterfaceMean {
             compensation,
             t_mean: hemisphere_mean(&t),
             capture,
+            floor: PI * compensation * polynomial(&lost, OBLIQUE.sqrt()) * polynomial(&lost, 1.0),
         };
         let lost_nodes = chebyshev::<LOST_TERMS>();
         let lost = through(&lost_nodes, &lost_nodes.map(|x| polynomial(&lost, x)));
@@ -180,33 +193,6 @@ fn hemisphere_mean(coefficients: &[f64; MU_TERMS]) -> f64 {
         .sum()
 }
 
-/// Value at `x` of a polynomial, its coefficients from the constant upwards (Horner).
-fn polynomial(coefficients: &[f64], x: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
-}
-
-/// Chebyshev nodes on [0, 1], where a polynomial strays least between them.
-fn chebyshev<const N: usize>() -> [f64; N] {
-    std::array::from_fn(|i| 0.5 - 0.5 * (PI * (i as f64 + 0.5) / N as f64).cos())
-}
-
-/// Coefficients of the polynomial through (`nodes`, `values`): Newton's divided differences,
-/// then expanded (Björck & Pereyra 1970).
-fn through<const N: usize>(nodes: &[f64; N], values: &[f64; N]) -> [f64; N] {
-    let mut c = *values;
-    for k in 0..N {
-        for i in (k + 1..N).rev() {
-            c[i] = (c[i] - c[i - 1]) / (nodes[i] - nodes[i - k - 1]);
-        }
-    }
-    for k in (0..N).rev() {
-        for i in k..N - 1 {
-            c[i] -= nodes[k] * c[i + 1];
-        }
-    }
-    c
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -215,16 +201,6 @@ mod tests {
     const FIT: f64 = 4e-3;
     /// Of the loss, as a share of a perfect diffuser's light, in whose unit it is shown.
     const LOST_FIT: f64 = 1e-3;
-
-    #[test]
-    fn a_polynomial_goes_through_its_nodes() {
-        let nodes = chebyshev::<MU_TERMS>();
-        let cubic = |x: f64| 1.0 - 2.0 * x + 0.5 * x * x * x;
-        let c = through(&nodes, &nodes.map(cubic));
-        for (found, expected) in c.iter().zip([1.0, -2.0, 0.0, 0.5, 0.0, 0.0, 0.0]) {
-            assert!((found - expected).abs() < 1e-11, "{c:?}");
-        }
-    }
 
     #[test]
     fn follows_the_integral_between_its_nodes() {

@@ -1,6 +1,10 @@
 //! The ladder of tiers: what each keeps of the physics, and its BRDF.
 
-use std::{f64::consts::PI, fmt, str::FromStr};
+use std::{
+    f64::consts::{FRAC_1_SQRT_2, FRAC_PI_8, PI},
+    fmt,
+    str::FromStr,
+};
 
 use glam::DVec3;
 
@@ -18,7 +22,7 @@ pub enum Tier {
     /// Diffuse light coupled to the interface, exact Fresnel, compensation, area lamps.
     #[default]
     Gallery,
-    /// Ink as a layer of its own. Not shown yet.
+    /// Ink as a layer of its own, single scattering apart, light through both sides.
     Study,
     /// The shader of Apollonio et al. 2021. Not shown yet.
     Isle,
@@ -65,7 +69,15 @@ impl Tier {
 
     /// Whether this version can show it.
     pub fn is_shown(self) -> bool {
-        matches!(self, Self::Draft | Self::Gallery | Self::Lambert)
+        matches!(
+            self,
+            Self::Draft | Self::Gallery | Self::Study | Self::Lambert
+        )
+    }
+
+    /// Whether what the surface reflects is missing underneath: gallery and study.
+    pub fn is_coupled(self) -> bool {
+        matches!(self, Self::Gallery | Self::Study)
     }
 }
 
@@ -104,6 +116,8 @@ pub struct Surface {
     pub f_normal: f64,
     /// Strength of the specular lobe; 1 is physical.
     pub specular: f64,
+    /// Fresnel reflectance of facets that mirror 45° light straight up, into a reproduction.
+    pub f_capture: f64,
 }
 
 impl Surface {
@@ -116,6 +130,7 @@ impl Surface {
             eta,
             f_normal,
             specular,
+            f_capture: fresnel_dielectric(FRAC_PI_8.cos(), eta),
         }
     }
 }
@@ -159,11 +174,23 @@ pub fn brdf_draft(s: &Surface, g: &Facing) -> DVec3 {
     s.albedo / PI + DVec3::splat(s.specular * lobe)
 }
 
-/// The photographed albedo, no higher than a sheet that gives back all light can photograph:
-/// 1/(t̄·capture).
+/// Squared sine of the half angle between light and eye in reproduction photography, 22.5°.
+const CAPTURE_SIN2_H: f64 = 0.5 - 0.5 * FRAC_1_SQRT_2;
+
+/// What the surface itself adds to an albedo photographed at 45°/0°: its lobe and compensation.
+pub fn capture_floor(s: &Surface, mean: &InterfaceMean) -> f64 {
+    let lobe = d_ggx(CAPTURE_SIN2_H, s.alpha) * v_smith(FRAC_1_SQRT_2, 1.0, s.alpha);
+    PI * s.specular * lobe * s.f_capture + mean.floor
+}
+
+/// The diffuse part of the photographed albedo: without what the surface reflected into the
+/// photograph, and no higher than a sheet that gives back all light can photograph, 1/(t̄·capture).
+/// A spot darker than the surface's own reflection has none.
 pub fn albedo_of(s: &Surface, mean: &InterfaceMean) -> DVec3 {
-    s.albedo
-        .min(DVec3::splat(1.0 / (mean.t_mean * mean.capture)))
+    (s.albedo - capture_floor(s, mean)).clamp(
+        DVec3::ZERO,
+        DVec3::splat(1.0 / (mean.t_mean * mean.capture)),
+    )
 }
 
 /// The gallery tier: what the interface reflects, the diffuser underneath does not get, on the
@@ -176,15 +203,22 @@ pub fn brdf_gallery(
     at_o: &Interface,
     mean: &InterfaceMean,
 ) -> DVec3 {
+    let diffuse = at_i.t * at_o.t * mean.capture / PI;
+    albedo_of(s, mean) * diffuse + DVec3::splat(brdf_gallery_specular(s, g, at_i, at_o, mean))
+}
+
+/// The gallery tier's gloss: one bounce, and the compensation for more.
+pub fn brdf_gallery_specular(
+    s: &Surface,
+    g: &Facing,
+    at_i: &Interface,
+    at_o: &Interface,
+    mean: &InterfaceMean,
+) -> f64 {
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_dielectric(g.cos_d, s.eta);
-    let albedo = s
-        .albedo
-        .min(DVec3::splat(1.0 / (mean.t_mean * mean.capture)));
-    let diffuse = at_i.t * at_o.t * mean.capture / PI;
-    let compensated = mean.compensation * at_i.lost * at_o.lost;
-    albedo * diffuse + DVec3::splat(s.specular * lobe + compensated)
+    s.specular * lobe + mean.compensation * at_i.lost * at_o.lost
 }
 
 #[cfg(test)]

@@ -35,6 +35,9 @@ pub struct PaperMaps {
     pub normal: Option<Handle<Image>>,
     pub roughness: Option<Handle<Image>>,
     pub outline: Option<Handle<Image>>,
+    pub transmission: Option<Handle<Image>>,
+    /// Albedo of the other side, for light that comes through it.
+    pub other: Option<Handle<Image>>,
     pub overlays: Vec<Handle<Image>>,
 }
 
@@ -61,10 +64,18 @@ impl PaperMaterial {
     /// Binding and image of every texture in the layout.
     fn textures(&self) -> impl Iterator<Item = (u32, Option<&Handle<Image>>)> {
         let maps = &self.maps;
-        let fixed = [&maps.albedo, &maps.normal, &maps.roughness, &maps.outline];
+        let fixed = [
+            (2, &maps.albedo),
+            (3, &maps.normal),
+            (4, &maps.roughness),
+            (5, &maps.outline),
+            (9, &maps.transmission),
+            (10, &maps.other),
+        ];
         let overlays = (0..MAX_OVERLAYS).map(|i| maps.overlays.get(i));
-        (2..)
-            .zip(fixed.map(Option::as_ref))
+        fixed
+            .into_iter()
+            .map(|(binding, map)| (binding, map.as_ref()))
             .chain((OVERLAY_BINDING..).zip(overlays))
     }
 }
@@ -141,7 +152,8 @@ impl AsBindGroup for PaperMaterial {
         ];
         let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
         entries.extend(
-            (2..6)
+            [2, 3, 4, 5, 9, 10]
+                .into_iter()
                 .chain(overlays)
                 .map(|i| map.build(i, ShaderStages::FRAGMENT)),
         );
@@ -181,6 +193,11 @@ impl Material for PaperMaterial {
             ("TIER_LAMBERT", terms.tier == Tier::Lambert),
             ("TIER_DRAFT", terms.tier == Tier::Draft),
             ("TIER_GALLERY", terms.tier == Tier::Gallery),
+            ("TIER_STUDY", terms.tier == Tier::Study),
+            ("COUPLED", terms.tier.is_coupled()),
+            ("TRANSMISSION", terms.transmission),
+            ("TRANSMISSION_MAP", terms.transmission_map),
+            ("OTHER_ALBEDO", terms.other_albedo),
             ("ALBEDO_MAP", albedo_map),
             ("CURVED", terms.curved),
             ("NORMAL_MAP", terms.normal_map),

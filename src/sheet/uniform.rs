@@ -8,8 +8,10 @@ use crate::{
     manifest::exhibit::{MAX_LAMPS, MAX_OVERLAYS},
     maps::Coding,
     optics::{
+        ink::{FILM_TERMS, Film},
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
         quadrature::GAUSS_LEGENDRE,
+        study::{Split, Study, Through},
         table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
     },
 };
@@ -131,6 +133,7 @@ pub struct InterfaceUniform {
     pub compensation: Vec4,
     pub t_mean: Vec4,
     pub capture: Vec4,
+    pub floor: Vec4,
 }
 
 impl InterfaceUniform {
@@ -143,6 +146,77 @@ impl InterfaceUniform {
             compensation: narrow(table.compensation),
             t_mean: narrow(table.t_mean),
             capture: narrow(table.capture),
+            floor: narrow(table.floor),
+        }
+    }
+}
+
+/// Twin of `Film`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct FilmUniform {
+    pub excess: [Vec4; FILM_TERMS],
+    pub internal: [Vec4; FILM_TERMS],
+    pub diffuse_path: Vec4,
+}
+
+impl FilmUniform {
+    /// Narrows `film`.
+    pub fn new(film: &Film) -> Self {
+        let narrow = |c: DVec3| c.as_vec3().extend(0.0);
+        Self {
+            excess: film.excess.map(narrow),
+            internal: film.internal.map(narrow),
+            diffuse_path: DVec4::from_array(film.diffuse_path).as_vec4(),
+        }
+    }
+}
+
+/// Twin of `Split`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct SplitUniform {
+    pub kappa: Vec3,
+    pub mean: f32,
+    pub at_capture: Vec3,
+    pub depth: f32,
+    pub forward_share: f32,
+    pub g_forward: f32,
+    pub g_backward: f32,
+    pub capture_path: f32,
+}
+
+impl SplitUniform {
+    /// Narrows `split`.
+    pub fn new(split: &Split) -> Self {
+        Self {
+            kappa: split.kappa.as_vec3(),
+            mean: split.mean as f32,
+            at_capture: split.at_capture.as_vec3(),
+            depth: split.depth as f32,
+            forward_share: split.phase.forward_share as f32,
+            g_forward: split.phase.g_forward as f32,
+            g_backward: split.phase.g_backward as f32,
+            capture_path: split.capture_path as f32,
+        }
+    }
+}
+
+/// Twin of `Through`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct ThroughUniform {
+    pub reflected: Vec3,
+    pub transmitted: Vec3,
+    pub ballistic: Vec3,
+    pub flat_share: Vec3,
+}
+
+impl ThroughUniform {
+    /// Narrows `through`.
+    pub fn new(through: &Through) -> Self {
+        Self {
+            reflected: through.reflected.as_vec3(),
+            transmitted: through.transmitted.as_vec3(),
+            ballistic: through.ballistic.as_vec3(),
+            flat_share: through.flat_share.as_vec3(),
         }
     }
 }
@@ -175,6 +249,15 @@ pub struct PaperUniform {
     pub lights: [LightUniform; MAX_LAMPS],
     pub overlays: [MapPlace; MAX_OVERLAYS],
     pub quadrature: [Vec4; GAUSS_LEGENDRE.len()],
+    pub film: FilmUniform,
+    pub split: SplitUniform,
+    pub through: ThroughUniform,
+    pub lit_bare: Vec3,
+    pub f_capture: f32,
+    pub other_bare: Vec3,
+    pub clear_scale: f32,
+    pub other_place: MapPlace,
+    pub transmission_place: MapPlace,
 }
 
 impl PaperUniform {
@@ -183,6 +266,14 @@ impl PaperUniform {
     pub fn set_eye(&mut self, clip_from_table: DMat4, eye: DVec4, table_from_local: DMat4) {
         self.clip_from_local = (clip_from_table * table_from_local).as_mat4();
         self.eye = (table_from_local.inverse() * eye).as_vec4();
+    }
+
+    /// Sets what the side is made of.
+    pub fn set_study(&mut self, study: &Study) {
+        self.film = FilmUniform::new(&study.film);
+        self.split = SplitUniform::new(&study.split);
+        self.through = ThroughUniform::new(&study.through);
+        self.lit_bare = study.bare.as_vec3();
     }
 
     /// Sets the lamps, given in the table frame.

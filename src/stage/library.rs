@@ -43,6 +43,9 @@ impl Request {
     fn key(mut self) -> Self {
         if let Self::Map(map) = &mut self {
             map.file_mut().uv_from_side = DAffine2::IDENTITY;
+            if let MapUse::OtherAlbedo(colour) = map {
+                *map = MapUse::Albedo(colour.clone());
+            }
         }
         self
     }
@@ -61,15 +64,25 @@ impl Request {
 }
 
 enum Decoded {
-    Map(Box<Image>, Coding),
+    Map(Box<Image>, Facts),
     Surface(SideSurface),
+}
+
+/// What became known of a map while it was decoded.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// Applies if its values are normals.
+    pub coding: Coding,
+    /// Of a picture of the sheet: what its bare paper shows, linear sRGB.
+    pub bare: [f64; 3],
+    /// Mean of its first channel.
+    pub mean: f64,
 }
 
 /// What the library holds.
 #[derive(Clone, Debug)]
 pub enum Held {
-    /// With the coding that applies if its values are normals.
-    Map(Handle<Image>, Coding),
+    Map(Handle<Image>, Facts),
     Surface(Arc<SideSurface>),
 }
 
@@ -181,9 +194,13 @@ impl Library {
         rayon::spawn(move || {
             let decoded = unless_panicked(&request.path(), || match &request {
                 Request::Map(map) => load(map).map(|pyramid| {
-                    let coding = normal_coding(&pyramid.levels[0].texels);
+                    let facts = Facts {
+                        coding: normal_coding(&pyramid.levels[0].texels),
+                        bare: maps::bare_albedo(&pyramid),
+                        mean: maps::mean_of(&pyramid),
+                    };
                     let image = upload::map_image(pyramid, anisotropy, reads_unorm16);
-                    Decoded::Map(Box::new(image), coding)
+                    Decoded::Map(Box::new(image), facts)
                 }),
                 Request::Surface(surface, size) => {
                     load_surface(surface, *size).map(Decoded::Surface)
@@ -219,7 +236,7 @@ pub fn receive(mut library: ResMut<Library>, mut images: ResMut<Assets<Image>>) 
             continue;
         }
         let entry = match decoded {
-            Ok(Decoded::Map(image, coding)) => Entry::Ready(Held::Map(images.add(*image), coding)),
+            Ok(Decoded::Map(image, facts)) => Entry::Ready(Held::Map(images.add(*image), facts)),
             Ok(Decoded::Surface(surface)) => Entry::Ready(Held::Surface(Arc::new(surface))),
             Err(error) => {
                 library.faults.push((request.path(), error));
@@ -254,13 +271,14 @@ fn unless_panicked<T>(
 fn load(map: &MapUse) -> Result<Pyramid, MapError> {
     let path = &map.file().path;
     match map {
-        MapUse::Albedo(map) => maps::load_colour(path, map.encoding),
+        MapUse::Albedo(map) | MapUse::OtherAlbedo(map) => maps::load_colour(path, map.encoding),
         MapUse::Normal(map) => maps::load_normal(path, map.y),
         MapUse::NormalFromHeight(map, extent_mm) => {
             maps::load_normal_from_height(path, map.range_um, *extent_mm)
         }
         MapUse::Roughness(map) => maps::load_roughness(path, map.gloss),
         MapUse::Outline(_) => maps::load_outline(path),
+        MapUse::Transmission(_) => maps::load_height(path),
         MapUse::Overlay(overlay) => match &overlay.kind {
             OverlayKind::Categorical(legend) => {
                 let colours: Vec<[u8; 3]> = legend.iter().map(|entry| entry.colour).collect();

@@ -1,21 +1,25 @@
 //! The sides of the sheet as entities.
 
 use bevy::{camera::visibility::NoFrustumCulling, ecs::system::SystemParam, prelude::*};
-use glam::{DMat4, DQuat};
+use glam::{DMat4, DQuat, DVec3};
 
 use super::{
     Library, Shown, TABLE, Waker,
-    library::{Held, Request, is_lit},
+    library::{Facts, Held, Request, is_lit},
 };
 use crate::{
     manifest::{
         exhibit::{Drawing, SideName},
         lighting::Lighting,
     },
-    maps::Coding,
     needs::{MapUse, Needs, SideNeeds},
     optics::{
-        fresnel::normal_reflectance, microfacet::ALPHA_MIN, table::InterfaceTable, tier::Tier,
+        fresnel::normal_reflectance,
+        microfacet::ALPHA_MIN,
+        slab::Slab,
+        study::Study,
+        table::InterfaceTable,
+        tier::{self, Tier, albedo_of},
     },
     sheet::{
         PaperMaps, PaperMaterial,
@@ -129,16 +133,16 @@ pub fn arrange(
         }
         let mut held = held.into_iter();
         for side in &needs.sides {
-            let (images_of_side, codings): (Vec<Handle<Image>>, Vec<Coding>) = held
+            let (images_of_side, facts): (Vec<Handle<Image>>, Vec<Facts>) = held
                 .by_ref()
                 .take(side.maps.len())
                 .filter_map(|held| match held {
-                    Held::Map(image, coding) => Some((image, coding)),
+                    Held::Map(image, facts) => Some((image, facts)),
                     Held::Surface(_) => None,
                 })
                 .unzip();
             let material = materials.add(PaperMaterial {
-                paper: constants(drawing, side, &codings),
+                paper: constants(drawing, side, &facts),
                 terms: side.terms,
                 maps: bound(side, images_of_side),
                 display: arranged.display,
@@ -172,7 +176,7 @@ pub fn arrange(
 }
 
 /// What does not change while the sheet and the lamps move.
-fn constants(drawing: &Drawing, side: &SideNeeds, codings: &[Coding]) -> PaperUniform {
+fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUniform {
     let paper = &drawing.paper;
     let mut uniform = PaperUniform {
         table: Vec3::splat(TABLE),
@@ -188,7 +192,40 @@ fn constants(drawing: &Drawing, side: &SideNeeds, codings: &[Coding]) -> PaperUn
         size: drawing.size_mm.as_vec2(),
         ..PaperUniform::default()
     };
-    if side.terms.tier == Tier::Gallery {
+    let surface = |bare: [f64; 3]| {
+        let specular = f64::from(uniform.specular);
+        tier::Surface::new(
+            DVec3::from_array(bare),
+            paper.roughness,
+            paper.index,
+            specular,
+        )
+    };
+    // What bare paper shows on the side that is seen, and on the other.
+    let mut bare = [BARE_PAPER.map(f64::from); 2];
+    for (map, facts) in side.maps.iter().zip(facts) {
+        match map {
+            MapUse::Albedo(_) => bare[0] = facts.bare,
+            MapUse::OtherAlbedo(_) => bare[1] = facts.bare,
+            _ => {}
+        }
+    }
+    let [seen, other] = bare.map(surface);
+    uniform.f_capture = seen.f_capture as f32;
+    uniform.lit_bare = seen.albedo.as_vec3();
+    uniform.other_bare = other.albedo.as_vec3();
+    if side.terms.tier.is_coupled() || side.terms.transmission {
+        let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
+        let mean = here.mean_at(paper.roughness);
+        let study = Study::new(&seen, &mean, Slab::rag_paper(paper.thickness));
+        uniform.set_study(&study);
+        if side.terms.tier.is_coupled() {
+            uniform.other_bare = albedo_of(&other, &mean).max(DVec3::splat(1e-3)).as_vec3();
+        } else {
+            uniform.lit_bare = seen.albedo.as_vec3();
+        }
+    }
+    if side.terms.tier.is_coupled() {
         let table = if side.terms.roughness_map {
             InterfaceTable::new(paper.index, paper.specular)
         } else {
@@ -200,15 +237,20 @@ fn constants(drawing: &Drawing, side: &SideNeeds, codings: &[Coding]) -> PaperUn
     if let Some(first) = side.maps.first() {
         uniform.albedo_place = MapPlace::new(first.file().uv_from_side);
     }
-    for (map, coding) in side.maps.iter().zip(codings) {
+    for (map, facts) in side.maps.iter().zip(facts) {
         let uv_from_side = map.file().uv_from_side;
         match map {
             MapUse::Albedo(_) | MapUse::Overlay(_) => {}
             MapUse::Normal(_) | MapUse::NormalFromHeight(..) => {
-                uniform.set_normal_place(uv_from_side, *coding);
+                uniform.set_normal_place(uv_from_side, facts.coding);
             }
             MapUse::Roughness(_) => uniform.roughness_place = MapPlace::new(uv_from_side),
             MapUse::Outline(_) => uniform.outline_place = MapPlace::new(uv_from_side),
+            MapUse::OtherAlbedo(_) => uniform.other_place = MapPlace::new(uv_from_side),
+            MapUse::Transmission(_) => {
+                uniform.transmission_place = MapPlace::new(uv_from_side);
+                uniform.clear_scale = (1.0 / facts.mean.max(1e-3)) as f32;
+            }
         }
     }
     uniform
@@ -222,6 +264,8 @@ fn bound(side: &SideNeeds, images: Vec<Handle<Image>>) -> PaperMaps {
             MapUse::Normal(_) | MapUse::NormalFromHeight(..) => maps.normal = Some(image),
             MapUse::Roughness(_) => maps.roughness = Some(image),
             MapUse::Outline(_) => maps.outline = Some(image),
+            MapUse::Transmission(_) => maps.transmission = Some(image),
+            MapUse::OtherAlbedo(_) => maps.other = Some(image),
             MapUse::Overlay(_) => maps.overlays.push(image),
         }
     }

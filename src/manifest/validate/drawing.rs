@@ -54,7 +54,6 @@ impl Validator<'_, '_> {
             self.covering_map(&named, size_mm)
         });
         let transmission = raw.transmission.as_ref().and_then(|transmission| {
-            self.not_shown_yet(format!("Drawing \"{id}\": transmission is not shown yet."));
             let trail = trail.key("transmission").key("map");
             self.covering_map(&Named::plain(&transmission.map, &trail), size_mm)
         });

@@ -1,0 +1,244 @@
+//! The paper's body: a plane-parallel slab that scatters and absorbs, by diffusion.
+//!
+//! Symbols: σs, σa scattering and absorption coefficients in mm⁻¹; d thickness in mm; g mean
+//! cosine of scattering; r_i diffuse reflectance of the boundary from inside.
+
+use crate::units::Micrometres;
+
+const UM_PER_MM: f64 = 1000.0;
+
+/// A slab of one colour channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slab {
+    /// σs in mm⁻¹, > 0.
+    pub scattering: f64,
+    /// σa in mm⁻¹, ≥ 0.
+    pub absorption: f64,
+    /// d in mm, > 0.
+    pub thickness: f64,
+    pub phase: Phase,
+}
+
+/// Two Henyey-Greenstein lobes (Papas, de Mesa & Jensen 2014).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phase {
+    /// Share of the forward lobe, in [0, 1].
+    pub forward_share: f64,
+    /// In [0, .99].
+    pub g_forward: f64,
+    /// In [−.99, 0].
+    pub g_backward: f64,
+}
+
+impl Phase {
+    /// Mean cosine g.
+    pub fn mean_cosine(&self) -> f64 {
+        self.forward_share * self.g_forward + (1.0 - self.forward_share) * self.g_backward
+    }
+}
+
+/// What a slab does with diffuse light, its boundaries undone: shares in [0, 1].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Body {
+    /// R0.
+    pub reflected: f64,
+    /// T0.
+    pub transmitted: f64,
+}
+
+/// Below this σtr·L the quotient of hyperbolic sines is its limit.
+const SINH_SERIES: f64 = 1e-3;
+
+/// sinh(σk)/sinh(σL) for k ≤ L without overflow and without 0/0.
+fn sinh_ratio(sigma: f64, k: f64, l: f64) -> f64 {
+    if sigma * l < SINH_SERIES {
+        return k / l;
+    }
+    let sign = k.signum();
+    let k = k.abs();
+    sign * (sigma * (k - l)).exp() * (-2.0 * sigma * k).exp_m1() / (-2.0 * sigma * l).exp_m1()
+}
+
+impl Slab {
+    /// Old rag paper before its absorption is known: σs of 81.38 mm⁻¹ was fitted to white paper
+    /// (OPTICS.md, "Paper slab"), with a mean cosine of 1/3.
+    pub fn rag_paper(thickness: Micrometres) -> Self {
+        Self {
+            scattering: 81.38,
+            absorption: 0.0,
+            thickness: thickness.0 / UM_PER_MM,
+            phase: Phase {
+                forward_share: 1.0,
+                g_forward: 1.0 / 3.0,
+                g_backward: 0.0,
+            },
+        }
+    }
+
+    /// Light per unit of flux that has entered: (reflected, transmitted), both boundaries
+    /// included, for the boundaries' internal diffuse reflectance `r_i` in [0, 1).
+    ///
+    /// Diffusion between extrapolated boundaries with the source one transport mean free path
+    /// deep: the closed form of the sum over image dipoles (Donner & Jensen 2005, eq. 11 and 12).
+    /// In a slab thinner than that the source lies at its far side.
+    pub fn with_boundaries(&self, r_i: f64) -> (f64, f64) {
+        let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
+        let sigma_t = sigma_s + self.absorption;
+        let albedo = sigma_s / sigma_t;
+        let sigma_tr = (3.0 * self.absorption * sigma_t).sqrt();
+        let z_b = 2.0 * (1.0 + r_i) / (1.0 - r_i) / (3.0 * sigma_t);
+        let l = self.thickness + 2.0 * z_b;
+        let a = (1.0 / sigma_t).min(self.thickness);
+        let b = a + 2.0 * z_b;
+        let ratio = |k: f64| sinh_ratio(sigma_tr, k, l);
+        let reflected = 0.5 * albedo * (ratio(l - a) + ratio(l - b));
+        let transmitted = 0.5 * albedo * (ratio(a) + ratio(b));
+        (reflected.clamp(0.0, 1.0), transmitted.clamp(0.0, 1.0))
+    }
+
+    /// The slab alone, so that ink can lie between it and its boundaries.
+    pub fn body(&self, r_i: f64) -> Body {
+        let (x, t) = self.with_boundaries(r_i);
+        let (u, v) = (x / (1.0 - r_i), t / (1.0 - r_i));
+        let undone = |sum: f64| sum / (1.0 + r_i * sum);
+        let (s, q) = (undone(u + v), undone(u - v));
+        Body {
+            reflected: (0.5 * (s + q)).clamp(0.0, 1.0),
+            transmitted: (0.5 * (s - q)).clamp(0.0, 1.0),
+        }
+    }
+
+    /// The same slab with the absorption that makes it, over a back boundary of reflectance
+    /// `r_i`, reflect the share `r_b` of diffuse light from within; without absorption where
+    /// even that is too dark.
+    pub fn absorbing_to(self, r_b: f64, r_i: f64) -> Self {
+        let lit = |absorption: f64| Self { absorption, ..self }.body(r_i).backed(r_i);
+        let (mut low, mut high) = (0.0, 1.0);
+        if lit(low) <= r_b {
+            return Self {
+                absorption: 0.0,
+                ..self
+            };
+        }
+        // A paper's σa is below 10 mm⁻¹; what is blacker than 1e6 is black.
+        while lit(high) > r_b && high < 1e6 {
+            high *= 2.0;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if lit(middle) > r_b {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Self {
+            absorption: 0.5 * (low + high),
+            ..self
+        }
+    }
+}
+
+impl Body {
+    /// Reflectance over a backing of reflectance `backing`: R_b = R0 + T0²ρ_b/(1 − R0ρ_b).
+    pub fn backed(&self, backing: f64) -> f64 {
+        self.reflected
+            + self.transmitted * self.transmitted * backing / (1.0 - self.reflected * backing)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ISOTROPIC: Phase = Phase {
+        forward_share: 1.0,
+        g_forward: 0.0,
+        g_backward: 0.0,
+    };
+    /// Diffuse internal reflectance of a smooth n = 1.5 (OPTICS.md).
+    const R_I: f64 = 0.5963;
+
+    fn slab(scattering: f64, absorption: f64, thickness: f64) -> Slab {
+        Slab {
+            scattering,
+            absorption,
+            thickness,
+            phase: ISOTROPIC,
+        }
+    }
+
+    #[test]
+    fn closed_form_gives_the_published_figures() {
+        // OPTICS.md, "Paper slab": closed form per unit of flux entered times T(1) = .96. The
+        // mean cosine and the thin sheet's σa are not printed there; 1/3 and .01 give all.
+        let phase = Phase {
+            forward_share: 1.0,
+            g_forward: 1.0 / 3.0,
+            g_backward: 0.0,
+        };
+        for (slab, reflected, transmitted) in [
+            (slab(81.38, 0.0, 0.262), 0.781, 0.179),
+            (slab(81.38, 0.05, 0.262), 0.745, 0.153),
+            (slab(81.38, 0.5, 0.262), 0.570, 0.052),
+            (slab(20.0, 0.01, 0.15), 0.477, 0.476),
+            (slab(40.0, 0.4, 0.15), 0.473, 0.264),
+        ] {
+            let (x, t) = Slab { phase, ..slab }.with_boundaries(R_I);
+            // Printed to three places.
+            assert!((0.96 * x - reflected).abs() < 1e-3, "{slab:?}: {x} {t}");
+            assert!((0.96 * t - transmitted).abs() < 1e-3, "{slab:?}: {x} {t}");
+        }
+    }
+
+    #[test]
+    fn lossless_slabs_keep_all_light_and_nothing_overflows() {
+        for scattering in [1e-3, 1.0, 81.38, 1e5] {
+            for thickness in [1e-6, 1e-3, 0.15, 10.0, 1e4] {
+                let (x, t) = slab(scattering, 0.0, thickness).with_boundaries(R_I);
+                assert!((x + t - 1.0).abs() < 1e-12, "{scattering} {thickness}");
+                let body = slab(scattering, 0.0, thickness).body(R_I);
+                assert!((body.reflected + body.transmitted - 1.0).abs() < 1e-9);
+                for absorption in [1e-12, 1e-6, 0.05, 1e3] {
+                    let slab = slab(scattering, absorption, thickness);
+                    let (x, t) = slab.with_boundaries(R_I);
+                    assert!((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&t));
+                    assert!(x + t <= 1.0 + 1e-12, "{slab:?}");
+                    let body = slab.body(R_I);
+                    assert!(body.reflected + body.transmitted <= 1.0 + 1e-9, "{slab:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn quotient_of_sines_meets_its_limits() {
+        assert!((sinh_ratio(1e-9, 0.3, 1.0) - 0.3).abs() < 1e-12);
+        // Both sides of the series' end.
+        let (below, above) = (
+            sinh_ratio(0.999e-3, 0.3, 1.0),
+            sinh_ratio(1.001e-3, 0.3, 1.0),
+        );
+        assert!((below - above).abs() < 1e-6);
+        assert_eq!(sinh_ratio(1e3, 1.0, 3.0), (-2e3f64).exp());
+        assert!((sinh_ratio(2.0, -0.5, 1.0) + 1.0f64.sinh() / 2.0f64.sinh()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn absorption_is_found_again() {
+        for absorption in [0.0, 1e-3, 0.05, 0.5, 5.0] {
+            let slab = slab(81.38, absorption, 0.15);
+            let r_b = slab.body(R_I).backed(R_I);
+            let found = slab.absorbing_to(r_b, R_I).absorption;
+            assert!(
+                (found - absorption).abs() < 1e-9 + 1e-6 * absorption,
+                "{found}"
+            );
+        }
+        assert_eq!(
+            slab(81.38, 3.0, 0.15).absorbing_to(2.0, R_I).absorption,
+            0.0
+        );
+        assert!(slab(81.38, 3.0, 0.15).absorbing_to(0.0, R_I).absorption > 1e3);
+    }
+}
