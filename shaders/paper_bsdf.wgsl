@@ -38,16 +38,21 @@ fn fresnel_conductor(cos_i: f32, n: vec3<f32>, k: vec3<f32>) -> vec3<f32> {
     let c = clamp(cos_i, 0.0, 1.0);
     let c_2 = c * c;
     let s_2 = 1.0 - c_2;
-    let d = (n - k) * (n + k) - s_2;
+    let e = (n - 1.0) * (n + 1.0) - k * k;
+    let d = e + c_2;
     let q = 2.0 * n * k;
-    let root = sqrt(d * d + q * q);
-    let a_2 = select(0.5 * q * q / max(root - d, vec3(1e-12)), 0.5 * (root + d), d >= vec3(0.0));
-    let x = root + c_2;
-    let y = 2.0 * sqrt(a_2) * c;
-    let r_s = max(x - y, vec3(0.0)) / max(x + y, vec3(1e-12));
-    let v = c_2 * root + s_2 * s_2;
-    let w = y * s_2;
-    return r_s * 0.5 * (1.0 + max(v - w, vec3(0.0)) / max(v + w, vec3(1e-12)));
+    let half = 0.5 * q * q / max(sqrt(d * d + q * q) + abs(d), vec3(1e-12));
+    let over = d >= vec3(0.0);
+    let a_2 = select(half, d + half, over);
+    let b_2 = select(half - d, half, over);
+    let a = sqrt(a_2);
+    let sum = max(a + c, vec3(1e-6));
+    let difference = select(half - c_2, e + half, over) / sum;
+    let r_s = (difference * difference + b_2) / (sum * sum + b_2);
+    let p = a * c + s_2;
+    let m = a * c - s_2;
+    let r_p = r_s * (m * m + b_2 * c_2) / max(p * p + b_2 * c_2, vec3(1e-12));
+    return 0.5 * (r_s + r_p);
 }
 
 // Twins of src/optics/microfacet.rs
@@ -323,7 +328,9 @@ fn crossing(
 }
 
 fn phase_lobe(g: f32, cos_deflection: f32) -> f32 {
-    let d = max(1.0 + g * g - 2.0 * g * cos_deflection, 1e-6);
+    // 1 + g² − 2g cosΘ, which would cancel in the lobe's peak.
+    let narrow = 1.0 - abs(g);
+    let d = max(narrow * narrow + 2.0 * (abs(g) - g * cos_deflection), 1e-6);
     return 0.25 * INV_PI * (1.0 - g * g) / (d * sqrt(d));
 }
 

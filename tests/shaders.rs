@@ -12,13 +12,17 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use recto::{
     manifest::{MAX_LAMPS, MAX_OVERLAYS},
     optics::{
+        ink::FILM_TERMS,
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
         table::{ALPHA_FIT_MIN, LOST_TERMS, MU_TERMS},
     },
     sheet::{
         PAPER_BSDF, PAPER_MATERIAL,
-        uniform::{InterfaceUniform, LightUniform, MapPlace, PaperUniform},
+        uniform::{
+            FilmUniform, InterfaceUniform, LightUniform, MapPlace, PaperUniform, SplitUniform,
+            ThroughUniform,
+        },
     },
 };
 
@@ -308,6 +312,37 @@ impl Sentinel {
             compensation: self.vec4(),
             t_mean: self.vec4(),
             capture: self.vec4(),
+            floor: self.vec4(),
+        })
+    }
+
+    fn film(&mut self) -> (FilmUniform, Fields) {
+        filled!(FilmUniform {
+            excess: std::array::from_fn::<_, FILM_TERMS, _>(|_| self.vec4()),
+            internal: std::array::from_fn::<_, FILM_TERMS, _>(|_| self.vec4()),
+            diffuse_path: self.vec4(),
+        })
+    }
+
+    fn split(&mut self) -> (SplitUniform, Fields) {
+        filled!(SplitUniform {
+            kappa: self.vec3(),
+            mean: self.f32(),
+            at_capture: self.vec3(),
+            depth: self.f32(),
+            forward_share: self.f32(),
+            g_forward: self.f32(),
+            g_backward: self.f32(),
+            capture_path: self.f32(),
+        })
+    }
+
+    fn through(&mut self) -> (ThroughUniform, Fields) {
+        filled!(ThroughUniform {
+            reflected: self.vec3(),
+            transmitted: self.vec3(),
+            ballistic: self.vec3(),
+            flat_share: self.vec3(),
         })
     }
 
@@ -338,6 +373,15 @@ impl Sentinel {
             lights: std::array::from_fn::<_, MAX_LAMPS, _>(|_| self.light().0),
             overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),
             quadrature: std::array::from_fn::<_, { GAUSS_LEGENDRE.len() }, _>(|_| self.vec4()),
+            film: self.film().0,
+            split: self.split().0,
+            through: self.through().0,
+            lit_bare: self.vec3(),
+            f_capture: self.f32(),
+            other_bare: self.vec3(),
+            clear_scale: self.f32(),
+            other_place: self.map_place().0,
+            transmission_place: self.map_place().0,
         })
     }
 }

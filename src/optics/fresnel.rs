@@ -37,22 +37,24 @@ pub fn fresnel_conductor(cos_i: f64, n: f64, k: f64) -> f64 {
     let c = cos_i.clamp(0.0, 1.0);
     let c2 = c * c;
     let s2 = 1.0 - c2;
-    let d = (n - k) * (n + k) - s2;
+    // a + ib is the root of (n + ik)² − s², whose real part is d = e + c². All differences are
+    // taken before the squares, which would cancel where n + ik is near 1.
+    let e = (n - 1.0) * (n + 1.0) - k * k;
+    let d = e + c2;
     let q = 2.0 * n * k;
-    let a2_plus_b2 = (d * d + q * q).sqrt();
-    // a² = (√(d² + q²) + d)/2, without cancellation where d < 0.
-    let a2 = if d >= 0.0 {
-        0.5 * (a2_plus_b2 + d)
+    let half = 0.5 * q * q / ((d * d + q * q).sqrt() + d.abs()).max(1e-12);
+    let (a2, b2, a2_minus_c2) = if d >= 0.0 {
+        (d + half, half, e + half)
     } else {
-        0.5 * q * q / (a2_plus_b2 - d).max(1e-12)
+        (half, half - d, half - c2)
     };
-    let x = a2_plus_b2 + c2;
-    let y = 2.0 * a2.sqrt() * c;
-    // Tiny where light grazes: both are 1 there.
-    let r_s = (x - y).max(0.0) / (x + y).max(1e-12);
-    let v = c2 * a2_plus_b2 + s2 * s2;
-    let w = y * s2;
-    r_s * 0.5 * (1.0 + (v - w).max(0.0) / (v + w).max(1e-12))
+    let a = a2.sqrt();
+    let sum = (a + c).max(1e-6);
+    let difference = a2_minus_c2 / sum;
+    let r_s = (difference * difference + b2) / (sum * sum + b2);
+    let (p, m) = (a * c + s2, a * c - s2);
+    let r_p = r_s * (m * m + b2 * c2) / (p * p + b2 * c2).max(1e-12);
+    0.5 * (r_s + r_p)
 }
 
 /// Reflectance at normal incidence of a dielectric of index ratio `eta`.

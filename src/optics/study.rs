@@ -130,7 +130,9 @@ pub fn crossing(r: DVec3, t: DVec3, rho_f: DVec3, rho_b: DVec3, eta: f64) -> DVe
 /// Henyey & Greenstein's two-lobe phase function in sr⁻¹ at the cosine of the deflection.
 pub fn phase_function(phase: &Phase, cos_deflection: f64) -> f64 {
     let lobe = |g: f64| {
-        let d = (1.0 + g * g - 2.0 * g * cos_deflection).max(1e-6);
+        // 1 + g² − 2g cosΘ, which would cancel in the lobe's peak.
+        let narrow = 1.0 - g.abs();
+        let d = (narrow * narrow + 2.0 * (g.abs() - g * cos_deflection)).max(1e-6);
         (1.0 - g * g) / (4.0 * PI * d * d.sqrt())
     };
     phase.forward_share * lobe(phase.g_forward)

@@ -70,29 +70,38 @@ fn interfaces() {
             found[to + 1u] = at_mu.lost;
             found[to + 2u] = mean.compensation;
             found[to + 3u] = mean.t_mean;
-            found[to + 4u] = mean.capture;",
+            found[to + 4u] = mean.capture;
+            found[to + 5u] = mean.floor;",
             t.join(", "),
             lost.join(", "),
             means.join(", ")
         );
-        let text = format!("{PAPER_BSDF}\n{}", entry("f32", cases.len(), 5, &body));
+        let text = format!("{PAPER_BSDF}\n{}", entry("f32", cases.len(), 6, &body));
         let given = [uniform, cases.concat()].concat();
-        let found = gpu.run(&text, &given, cases.len(), 5);
+        let found = gpu.run(&text, &given, cases.len(), 6);
         let pairs: Vec<Pair> = cases
             .iter()
-            .zip(found.chunks(5))
+            .zip(found.chunks(6))
             .flat_map(|(case, found)| {
                 let (mu, alpha) = (f64::from(case[0]), f64::from(case[1]));
                 let (at, mean) = (table.at(mu, alpha), table.mean_at(alpha));
-                let expected = [at.t, at.lost, mean.compensation, mean.t_mean, mean.capture];
+                let expected = [
+                    at.t,
+                    at.lost,
+                    mean.compensation,
+                    mean.t_mean,
+                    mean.capture,
+                    mean.floor,
+                ];
                 let rounding = [
                     polynomial_rounding(&table.t, mu, alpha),
                     polynomial_rounding(&table.lost, mu, alpha),
                     polynomial_rounding(&[table.compensation], mu, alpha),
                     polynomial_rounding(&[table.t_mean], mu, alpha),
                     polynomial_rounding(&[table.capture], mu, alpha),
+                    polynomial_rounding(&[table.floor], mu, alpha),
                 ];
-                std::array::from_fn::<_, 5, _>(|k| {
+                std::array::from_fn::<_, 6, _>(|k| {
                     let mut pair = Pair::new(found[k], expected[k], RELATIVE);
                     pair.allowed += rounding[k];
                     pair
@@ -100,7 +109,7 @@ fn interfaces() {
             })
             .collect();
         judge(name, &pairs, |i| {
-            format!("{:?}, output {}", cases[i / 5], i % 5)
+            format!("{:?}, output {}", cases[i / 6], i % 6)
         })
         .unwrap();
     }

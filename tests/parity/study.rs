@@ -1,0 +1,349 @@
+//! The study tier: ink, single scattering, light through the sheet, particles.
+
+use super::*;
+use crate::interfaces::words;
+use recto::{
+    optics::{
+        fresnel::fresnel_conductor,
+        microfacet::{d_ggx_anisotropic, v_smith_anisotropic},
+        slab::{Phase, Slab},
+        study::{
+            Particle, Seen, Study, brdf_particles, brdf_study, btdf_study, particle_shares,
+            through_study,
+        },
+    },
+    sheet::uniform::{FilmUniform, SplitUniform, ThroughUniform},
+};
+
+fn conductors() -> Twins {
+    let seeded = Seeded::new(11);
+    let n = || seeded.log(1e-2, 6.0);
+    let k = || seeded.log_or_zero(1e-4, 20.0);
+    Twins {
+        name: "fresnel_conductor",
+        body: format!(
+            "let f = fresnel_conductor(given[at], vec3(given[at + 1u], given[at + 2u], given[at + 3u]),
+                vec3(given[at + 4u], given[at + 5u], given[at + 6u])); {FOUND_COLOUR}"
+        ),
+        twin: |x| (1..4).map(|c| fresnel_conductor(x[0], x[c], x[c + 3])).collect(),
+        relative: |_| RELATIVE,
+        cases: (0..100_000)
+            .map(|_| {
+                let cosine = seeded.log_or_zero(1e-4, 1.0);
+                [cosine, n(), n(), n(), k(), k(), k()].map(|x| x as f32).to_vec()
+            })
+            .collect(),
+    }
+}
+
+fn anisotropic() -> Twins {
+    let seeded = Seeded::new(12);
+    Twins {
+        name: "anisotropic facets",
+        body: "let l = vec3(given[at], given[at + 1u], given[at + 2u]);
+            let v = vec3(given[at + 3u], given[at + 4u], given[at + 5u]);
+            found[to] = d_ggx_anisotropic(given[at], given[at + 1u], given[at + 6u], given[at + 7u]);
+            found[to + 1u] = v_smith_anisotropic(l, v, given[at + 6u], given[at + 7u]);"
+            .into(),
+        twin: |x| {
+            let [l, v] = [0, 3].map(|i| DVec3::from_slice(&x[i..]));
+            vec![
+                d_ggx_anisotropic(x[0], x[1], x[6], x[7]),
+                v_smith_anisotropic(l, v, x[6], x[7]),
+            ]
+        },
+        relative: |x| near_mirror(x[6].min(x[7])),
+        cases: (0..100_000)
+            .map(|_| {
+                let up = |d: DVec3| DVec3::new(d.x, d.y, d.z.abs()).as_vec3().to_array();
+                let alpha = [(); 2].map(|()| seeded.log(1e-2, 1.0) as f32);
+                let (l, v) = (up(seeded.direction()), up(seeded.direction()));
+                [&l[..], &v, &alpha].concat()
+            })
+            .collect(),
+    }
+}
+
+#[test]
+fn facets_of_metal_and_of_combed_paper() {
+    let gpu = Gpu::new();
+    conductors().compare(&gpu, PAPER_BSDF).unwrap();
+    // 1 − x² − y² of a half vector cancels towards grazing, as in f64 only later.
+    anisotropic()
+        .compare_rounded(&gpu, PAPER_BSDF, |x| {
+            let d = d_ggx_anisotropic(x[0], x[1], x[6], x[7]);
+            let grazing = (x[0] / x[6]).hypot(x[1] / x[7]).powi(2).max(1e-6);
+            4.0 * d * UNIT_PRODUCT / grazing
+        })
+        .unwrap();
+}
+
+/// Papers at the extremes: index, roughness, bare albedo, σs, thickness in mm, phase.
+fn papers() -> Vec<(String, Surface, InterfaceMean, Study)> {
+    let phases = [[1.0, 0.33, 0.0], [0.5, 0.99, -0.99], [0.0, 0.0, 0.0]];
+    [
+        (1.5, 0.6, DVec3::new(0.8, 0.7, 0.55), 81.38, 0.165),
+        (1.33, 0.1, DVec3::new(0.03, 0.2, 0.9), 81.38, 0.05),
+        (2.5, 1.0, DVec3::splat(1.5), 1e3, 10.0),
+        (1.5, 0.3, DVec3::ZERO, 1e-2, 1e-3),
+        (1.01, 0.4, DVec3::new(0.5, 0.9, 0.1), 20.0, 0.15),
+    ]
+    .into_iter()
+    .zip(phases.iter().cycle())
+    .map(|((index, alpha, bare, scattering, thickness), phase)| {
+        let surface = Surface::new(bare, alpha, index, 1.0);
+        let table = InterfaceTable::at_roughness(alpha, index, 1.0);
+        let mean = table.mean_at(alpha);
+        let slab = Slab {
+            scattering,
+            absorption: 0.0,
+            thickness,
+            phase: Phase {
+                forward_share: phase[0],
+                g_forward: phase[1],
+                g_backward: phase[2],
+            },
+        };
+        let name = format!("n {index}, α {alpha}, albedo {bare}, σs {scattering}, d {thickness}");
+        (name, surface, mean, Study::new(&surface, &mean, slab))
+    })
+    .collect()
+}
+
+const NUMBERS: usize = 26;
+
+fn spots() -> Vec<Vec<f32>> {
+    let seeded = Seeded::new(13);
+    (0..100_000)
+        .map(|_| {
+            let share = || seeded.log_or_zero(1e-6, 1.0);
+            let cosine = || seeded.log(1e-4, 1.0);
+            let mut case = vec![cosine(), cosine(), seeded.log_or_zero(1e-3, 1.0)];
+            case.push(seeded.log_or_zero(1e-14, 1.0));
+            case.extend([share(), share(), share(), share()]);
+            // Photographs of both sides, to beyond white.
+            case.extend((0..6).map(|_| seeded.log_or_zero(1e-6, 2.0)));
+            case.extend((0..3).map(|_| seeded.log(1e-2, 6.0)));
+            case.extend((0..3).map(|_| seeded.log_or_zero(1e-4, 20.0)));
+            case.extend([
+                seeded.log(1e-2, 1.0),
+                share(),
+                seeded.log_or_zero(1e-3, 10.0),
+            ]);
+            case.extend([0.0, share(), 0.0]);
+            case.iter().map(|&x| x as f32).collect()
+        })
+        .collect()
+}
+
+/// All that the study tier computes for a spot: reflected, mirrored by particles, from a light
+/// table, from a lamp behind.
+fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVec3; 4] {
+    let g = Facing {
+        mu_i: x[0],
+        mu_o: x[1],
+        cos_d: x[2],
+        sin2_h: x[3],
+    };
+    let (at_i, at_o) = (
+        Interface {
+            t: x[4],
+            lost: x[5],
+        },
+        Interface {
+            t: x[6],
+            lost: x[7],
+        },
+    );
+    let (front, back) = (DVec3::from_slice(&x[8..]), DVec3::from_slice(&x[11..]));
+    let particle = Particle {
+        n: DVec3::from_slice(&x[14..]),
+        k: DVec3::from_slice(&x[17..]),
+        alpha: x[20],
+        covered: x[21],
+    };
+    let s = Surface {
+        albedo: front,
+        ..*paper
+    };
+    let depth = study.film.optical_depth(front) * x[24];
+    let seen = Seen {
+        depth_f: depth,
+        depth_b: study.film.optical_depth(back),
+        rho_f: study.film.internal_reflectance(front),
+        rho_b: study.film.internal_reflectance(back),
+        clear: x[22],
+    };
+    let shares = particle_shares(&s, mean, study.bare, &particle);
+    let (split, through) = (&study.split, &study.through);
+    [
+        brdf_study(&s, &g, &at_i, &at_o, mean, split, depth, &particle, &shares),
+        brdf_particles(&shares, &particle, &g),
+        through_study(&study.film, through, &seen, &at_o, mean, g.mu_o, s.eta),
+        btdf_study(through, &seen, &g, &at_i, &at_o, s.eta),
+    ]
+}
+
+fn literal(value: f64) -> String {
+    format!("f32({:e})", value as f32)
+}
+
+fn colour(value: DVec3) -> String {
+    let [r, g, b] = value.to_array().map(literal);
+    format!("vec3({r}, {g}, {b})")
+}
+
+/// Reads the constants of `study` from the beginning of the numbers.
+fn constants(study: &Study) -> (Vec<f32>, String) {
+    let film = words(&FilmUniform::new(&study.film));
+    let vectors: Vec<String> = (0..film.len())
+        .step_by(4)
+        .map(|i| {
+            format!(
+                "vec4(given[{i}u], given[{}u], given[{}u], given[{}u])",
+                i + 1,
+                i + 2,
+                i + 3
+            )
+        })
+        .collect();
+    let (excess, rest) = vectors.split_at(7);
+    let (internal, path) = rest.split_at(7);
+    let split = SplitUniform::new(&study.split);
+    let through = ThroughUniform::new(&study.through);
+    let wide = |v: Vec3| colour(v.as_dvec3());
+    let narrow = |x: f32| literal(f64::from(x));
+    let text = format!(
+        "let film = Film(array({}), array({}), {});
+        let split = Split({}, {}, {}, {}, {}, {}, {}, {});
+        let through = Through({}, {}, {}, {});
+        let bare = {};",
+        excess.join(", "),
+        internal.join(", "),
+        path[0],
+        wide(split.kappa),
+        narrow(split.mean),
+        wide(split.at_capture),
+        narrow(split.depth),
+        narrow(split.forward_share),
+        narrow(split.g_forward),
+        narrow(split.g_backward),
+        narrow(split.capture_path),
+        wide(through.reflected),
+        wide(through.transmitted),
+        wide(through.ballistic),
+        wide(through.flat_share),
+        colour(study.bare),
+    );
+    (film, text)
+}
+
+/// Compares the study tier with `physics`, for the paper of this number.
+fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String> {
+    let (name, paper, mean, study) = papers().swap_remove(number);
+    let (film, constants) = constants(&study);
+    let cases = spots();
+    let body = format!(
+        "{constants}
+        let at = {}u + index * {NUMBERS}u;
+        let front = vec3(given[at + 8u], given[at + 9u], given[at + 10u]);
+        let back = vec3(given[at + 11u], given[at + 12u], given[at + 13u]);
+        let s = Surface(front, {}, {}, {}, 1.0, {});
+        let g = Facing(given[at], given[at + 1u], given[at + 2u], given[at + 3u]);
+        let at_i = Interface(given[at + 4u], given[at + 5u]);
+        let at_o = Interface(given[at + 6u], given[at + 7u]);
+        let mean = InterfaceMean({}, {}, {}, {});
+        let particle = Particle(vec3(given[at + 14u], given[at + 15u], given[at + 16u]),
+            given[at + 20u], vec3(given[at + 17u], given[at + 18u], given[at + 19u]), given[at + 21u]);
+        let depth = optical_depth(film, split.capture_path, front) * given[at + 24u];
+        let seen = Seen(depth, given[at + 22u], optical_depth(film, split.capture_path, back),
+            internal_reflectance(film, front), internal_reflectance(film, back));
+        let shares = particle_shares(s, mean, bare, particle);
+        let a = brdf_study(s, g, at_i, at_o, mean, split, depth, particle, shares);
+        let b = brdf_particles(shares, particle, g);
+        let c = through_study(film, through, seen, at_o, mean, g.mu_o, s.eta);
+        let d = btdf_study(through, seen, g, at_i, at_o, s.eta);
+        found[to] = a.x; found[to + 1u] = a.y; found[to + 2u] = a.z;
+        found[to + 3u] = b.x; found[to + 4u] = b.y; found[to + 5u] = b.z;
+        found[to + 6u] = c.x; found[to + 7u] = c.y; found[to + 8u] = c.z;
+        found[to + 9u] = d.x; found[to + 10u] = d.y; found[to + 11u] = d.z;",
+        film.len(),
+        literal(paper.alpha),
+        literal(paper.eta),
+        literal(paper.f_normal),
+        literal(paper.f_capture),
+        literal(mean.compensation),
+        literal(mean.t_mean),
+        literal(mean.capture),
+        literal(mean.floor),
+    );
+    let text = format!("{physics}\n{}", entry("f32", cases.len(), 12, &body));
+    let given = [film, cases.concat()].concat();
+    let found = gpu.run(&text, &given, cases.len(), 12);
+    let mut pairs = Vec::new();
+    for (case, found) in cases.iter().zip(found.chunks(12)) {
+        let x = widen(case);
+        let expected = spot(&x, &paper, &mean, &study);
+        let terms =
+            x[8].max(x[9]).max(x[10]) + capture_floor(&paper, &mean) + study.bare.max_element();
+        // What the rounding of differences of albedos costs: diffusely, and in the lobe.
+        let diffuse = terms * UNIT_PRODUCT * (1.0 + x[4] * x[6] * mean.capture) / PI;
+        // A deflection's cosine is rounded, and the narrowest lobes are (1 − |g|)² wide.
+        let narrow = 1.0
+            - study
+                .split
+                .phase
+                .g_forward
+                .max(-study.split.phase.g_backward);
+        let peak = 3.0 * UNIT_PRODUCT / (narrow * narrow);
+        let lobe = particle_lobe_over_capture(&x) * terms * UNIT_PRODUCT;
+        for (k, &gpu) in found.iter().enumerate() {
+            let mut pair = Pair::new(gpu, expected[k / 3][k % 3], RELATIVE);
+            let diffuse = diffuse + peak * pair.cpu;
+            pair.allowed += [diffuse, lobe, 0.0, 0.0][k / 3];
+            pairs.push(pair);
+        }
+    }
+    judge(&name, &pairs, |i| {
+        format!("{:?}, output {}", cases[i / 12], i % 12)
+    })
+}
+
+/// How much light the particles' lobe gives for each unit of albedo that they mirror.
+fn particle_lobe_over_capture(x: &[f64]) -> f64 {
+    let facets = d_ggx(x[3], x[20]) * v_smith(x[0], x[1], x[20]);
+    let captured = d_ggx(0.5 - 0.5 * std::f64::consts::FRAC_1_SQRT_2, x[20])
+        * v_smith(std::f64::consts::FRAC_1_SQRT_2, 1.0, x[20]);
+    let f = |cos: f64| [0, 1, 2].map(|c| fresnel_conductor(cos, x[14 + c], x[17 + c]));
+    let brightest = f(x[2]).into_iter().fold(0.0, f64::max);
+    let darkest = f(std::f64::consts::FRAC_PI_8.cos())
+        .into_iter()
+        .fold(1.0, f64::min);
+    facets * brightest / (captured * darkest).max(1e-6)
+}
+
+#[test]
+fn ink_and_light_through_the_sheet() {
+    let gpu = Gpu::new();
+    for number in 0..papers().len() {
+        compare_study(&gpu, PAPER_BSDF, number).unwrap();
+    }
+}
+
+#[test]
+fn a_broken_study_is_found() {
+    let gpu = Gpu::new();
+    for (sound, wrong) in [
+        (
+            "1.0 / inner_i + 1.0 / inner_o - capture_path",
+            "1.0 / inner_i + 1.0 / inner_o",
+        ),
+        ("- t * t * rho_f * rho_b", "+ t * t * rho_f * rho_b"),
+        ("(1.0 - g * g) / (d * sqrt(d))", "(1.0 - g * g) / d"),
+        ("let q = 2.0 * n * k;", "let q = n * k;"),
+    ] {
+        let physics = broken(sound, wrong);
+        let outcome = compare_study(&gpu, &physics, 0);
+        assert!(outcome.is_err(), "{wrong} passed: {outcome:?}");
+    }
+}
