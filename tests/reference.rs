@@ -10,6 +10,8 @@ mod statistic;
 mod calibration;
 #[path = "reference/interface.rs"]
 mod interface;
+#[path = "reference/mitsuba.rs"]
+mod mitsuba;
 #[path = "reference/sampling.rs"]
 mod sampling;
 #[path = "reference/sheet.rs"]

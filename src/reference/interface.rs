@@ -15,6 +15,9 @@ use crate::optics::{fresnel::fresnel_dielectric, microfacet::d_ggx};
 /// Roughness below which the interface is smooth (OPTICS.md, numeric trap 5).
 pub const ALPHA_SMOOTH: f64 = 1e-3;
 
+/// Indices nearer than this match: less than 10⁻⁸ is reflected.
+const INDEX_MATCHED: f64 = 1e-4;
+
 /// ln u is kept above this, so that a ray deep among the facets still comes out.
 const LN_U_MIN: f64 = -700.0;
 
@@ -59,9 +62,11 @@ impl Ray {
 }
 
 impl Interface {
-    /// Whether reflection and refraction are those of a plane.
+    /// Whether reflection and refraction are those of a plane. So they are, whatever the
+    /// facets, where the indices match; and there a grazing ray, which nothing turns, would
+    /// meet a billion facets.
     pub fn is_smooth(&self) -> bool {
-        self.alpha < ALPHA_SMOOTH
+        self.alpha < ALPHA_SMOOTH || (self.n - 1.0).abs() < INDEX_MATCHED
     }
 
     /// Index ratio of the medium behind the facet over that in front of it.

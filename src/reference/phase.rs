@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::rng::{Rng, turn, uniform};
+use super::rng::{Rng, disc, uniform};
 
 /// p = w_f HG(g_f) + (1 − w_f) HG(g_b), per steradian, ∫p = 1.
 #[derive(Clone, Copy, Debug)]
@@ -45,24 +45,27 @@ impl Phase {
         self.w_f * forward + (1.0 - self.w_f) * henyey_greenstein(cos, self.g_b)
     }
 
-    /// A direction of travel after `w`.
+    /// A direction of travel after `w`. Its length is 1 within rounding, which many
+    /// scatterings add up; interfaces mend it.
     #[inline]
     pub fn sample(&self, w: DVec3, rng: &mut Rng) -> DVec3 {
         let forward = self.w_f == 1.0 || uniform(rng) < self.w_f;
         let g = if forward { self.g_f } else { self.g_b };
-        let (cos_phi, sin_phi, u) = turn(rng);
-        let s = 2.0 * u - 1.0;
+        // One point of the disc holds the azimuth and, in its radius, the angle.
+        let (x, y, r_2) = disc(rng);
+        let s = 1.0 - 2.0 * r_2;
         if g == 0.0 {
-            let sin = (1.0 - s * s).max(0.0).sqrt();
-            return DVec3::new(sin * cos_phi, sin * sin_phi, s);
+            let k = 2.0 * (1.0 - r_2).sqrt();
+            return DVec3::new(k * x, k * y, s);
         }
         // cos = (1 + g² − t²)/2g, with the difference divided out by hand, so that small g
         // cost no digits.
-        let t = (1.0 - g * g) / (1.0 + g * s);
-        let cos = 0.5 * (g + (s + g) * (1.0 + t) / (1.0 + g * s));
-        let sin = (1.0 - cos * cos).max(0.0).sqrt();
-        let (x, y) = w.any_orthonormal_pair();
-        (cos * w + sin * cos_phi * x + sin * sin_phi * y).normalize()
+        let inverse = 1.0 / (1.0 + g * s);
+        let t = (1.0 - g * g) * inverse;
+        let cos = 0.5 * (g + (s + g) * (1.0 + t) * inverse);
+        let k = ((1.0 - cos * cos).max(0.0) / r_2).sqrt();
+        let (e_x, e_y) = w.any_orthonormal_pair();
+        cos * w + (k * x) * e_x + (k * y) * e_y
     }
 }
 

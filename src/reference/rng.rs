@@ -26,18 +26,25 @@ pub fn exponential(rng: &mut Rng) -> f64 {
     Exp1.sample(rng)
 }
 
-/// A direction in the plane, as (cosine, sine), and an independent uniform number in (0, 1]:
-/// a point of the unit disc, whose squared radius is uniform and independent of its angle
-/// (Marsaglia 1972).
+/// A point of the unit disc, without its middle: (x, y, x² + y²).
 #[inline]
-pub fn turn(rng: &mut Rng) -> (f64, f64, f64) {
+pub fn disc(rng: &mut Rng) -> (f64, f64, f64) {
     loop {
         let x = 2.0 * uniform(rng) - 1.0;
         let y = 2.0 * uniform(rng) - 1.0;
         let r_2 = x * x + y * y;
         if r_2 <= 1.0 && r_2 > 0.0 {
-            let r = r_2.sqrt();
-            return (x / r, y / r, r_2);
+            return (x, y, r_2);
         }
     }
+}
+
+/// A direction in the plane, as (cosine, sine), and an independent uniform number in (0, 1]:
+/// the squared radius of a point of the disc, which does not depend on its angle
+/// (Marsaglia 1972).
+#[inline]
+pub fn turn(rng: &mut Rng) -> (f64, f64, f64) {
+    let (x, y, r_2) = disc(rng);
+    let r = r_2.sqrt();
+    (x / r, y / r, r_2)
 }

@@ -62,6 +62,9 @@ impl Layers {
             ("g_f", phase.g_f, -0.99, 0.99, lobe, "a sharper lobe is a beam, not a phase"),
             ("g_b", phase.g_b, -0.99, 0.99, lobe, "a sharper lobe is a beam, not a phase"),
             ("thickness", self.thickness_mm, 1e-6, 1e3, "1e-6 to 1000 mm", "a sheet has one"),
+            // A lossless walk has 2 n² σs d collisions in the mean.
+            ("sigma_s × thickness", self.sigma_s * self.thickness_mm, 0.0, 1e4, "up to 10000",
+                "no more is told from an endless depth, and no walk ends in time"),
         ];
         for (name, found, low, high, allowed, reason) in rows {
             if !(low..=high).contains(&found) {
@@ -199,11 +202,13 @@ impl Layers {
         true
     }
 
-    /// A photon that arrives from the air along `w`, at the front where w.z < 0.
+    /// A photon that arrives from the air along `w`, a unit vector, at the front where w.z < 0.
     fn arrive(&self, w: DVec3) -> (Face, Photon) {
-        let face = if w.z < 0.0 { Face::Front } else { Face::Back };
+        // −0 comes from the front.
+        let z = w.z.abs().max(GRAZING).copysign(w.z);
+        let face = if z < 0.0 { Face::Front } else { Face::Back };
         let photon = Photon {
-            w,
+            w: DVec3::new(w.x, w.y, z),
             depth: 0.0,
             lengths: Lengths::default(),
             collisions: 0,
@@ -223,19 +228,24 @@ impl Layers {
     }
 
     /// Follows a photon that arrives from the air along `w` until it leaves; nothing is lost.
-    /// `None` where the observer ends the walk.
+    /// `None` where the observer ends the walk, or `w` is no direction. The layers are those
+    /// that pass [`Layers::check`].
     pub fn walk(&self, w: DVec3, observer: &mut impl Observer, rng: &mut Rng) -> Option<Photon> {
+        if !w.is_finite() {
+            return None;
+        }
         let (face, mut photon) = self.arrive(w);
         observer.unscattered(face, &photon, rng);
         if !self.meet(face, &mut photon, rng) {
             return Some(photon);
         }
+        let mean_free = 1.0 / self.sigma_s;
         loop {
-            let free = exponential(rng) / self.sigma_s;
-            let (face, ahead) = self.ahead(&photon);
-            if free < ahead {
+            let free = exponential(rng) * mean_free;
+            let depth = photon.depth - free * photon.w.z;
+            if depth > 0.0 && depth < self.thickness_mm {
                 photon.lengths.slab += free;
-                photon.depth -= free * photon.w.z;
+                photon.depth = depth;
                 if !observer.collision(&photon, rng) {
                     return None;
                 }
@@ -243,6 +253,8 @@ impl Layers {
                 photon.collisions += 1;
                 continue;
             }
+            photon.w = photon.w.normalize();
+            let (face, ahead) = self.ahead(&photon);
             photon.lengths.slab += ahead;
             photon.lengths.cross(face, photon.w);
             if photon.collisions == 0 {
@@ -258,6 +270,9 @@ impl Layers {
     /// interfaces, with the weight that fibres have let through so far.
     pub(super) fn beams(&self, w: DVec3, beams: &mut Vec<Beam>, rng: &mut Rng) {
         beams.clear();
+        if !w.is_finite() {
+            return;
+        }
         let (face, mut photon) = self.arrive(w);
         let mut weight = 1.0;
         let mut inside = self.meet(face, &mut photon, rng);
@@ -279,6 +294,9 @@ impl Layers {
         }
     }
 }
+
+/// Light in the very plane of the sheet arrives at this cosine.
+const GRAZING: f64 = 1e-9;
 
 /// Weight below which an unscattered beam lives on by chance only.
 const FAINT: f64 = 1e-2;

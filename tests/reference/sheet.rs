@@ -312,3 +312,53 @@ fn impossible_sheets_are_refused_with_the_range() {
         assert!(fault(layers).contains(name), "{}", fault(layers));
     }
 }
+
+#[test]
+fn extremes_stay_finite_and_end() {
+    let extremes = [
+        (1.0, 0.0, 1e-6, Phase::ISOTROPIC, 1e-6),
+        (4.0, 1.0, 200.0, Phase::single(0.99), 1.0),
+        (1.5, 1e-3, 1e4, Phase::single(-0.99), 0.02),
+        (1.0, 1.0, 20.0, Phase::single(0.5), 0.3),
+    ];
+    for (n, alpha, sigma_s, phase, thickness_mm) in extremes {
+        let layers = Layers {
+            n,
+            alpha: [alpha, 1.0 - alpha],
+            sigma_s,
+            phase,
+            thickness_mm,
+        };
+        assert_eq!(layers.check(), Ok(()));
+        let inks = [Absorption::NONE, absorption(1e4, 20.0, 20.0)];
+        for mu in [0.0, 1e-12, 1e-4, 1.0] {
+            let flux = reflectance_transmittance(&layers, &inks, mu, 50, 41);
+            let sum = flux[0].reflected.mean + flux[0].transmitted.mean;
+            assert!((sum - 1.0).abs() < 1e-6, "{layers:?} {mu}: {sum}");
+            let dark = flux[1].reflected.mean + flux[1].transmitted.mean;
+            assert!(
+                (0.0..=sum + 1e-9).contains(&dark),
+                "{layers:?} {mu}: {dark}"
+            );
+            for lamp in [0.0, 1e-12, 1.0, -1e-6, f64::NAN] {
+                let lamps = [Lamp {
+                    direction: DVec3::new((1.0 - lamp * lamp).sqrt(), 0.0, lamp),
+                    irradiance: [1.0; 2],
+                }];
+                let lighting = Lighting {
+                    lamps: &lamps,
+                    table: [1.0; 2],
+                };
+                let view = DVec3::new(0.0, (1.0 - mu * mu).sqrt(), mu);
+                let seen = radiance(&layers, &inks, view, &lighting, 20, &mut stream(42, 0));
+                for seen in seen {
+                    let fine = seen.mean >= 0.0 && seen.mean.is_finite();
+                    assert!(fine || lamp.is_nan(), "{layers:?} {mu} {lamp}: {seen:?}");
+                }
+            }
+        }
+    }
+    // No direction at all ends, too.
+    let nowhere = reflectance_transmittance(&LAID, &[Absorption::NONE], f64::NAN, 10, 43);
+    assert_eq!(nowhere[0].reflected.mean, 0.0);
+}
