@@ -8,7 +8,7 @@ use std::{
 
 /// Each module with the modules, or paths within them, that it may name. `bevy` stands for every
 /// crate of Bevy's. The crate's root and `cli` may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 14] = [
+const MAY_IMPORT: [(&str, &[&str]); 15] = [
     ("units", &[]),
     ("colour", &[]),
     ("optics", &["units", "colour"]),
@@ -16,6 +16,14 @@ const MAY_IMPORT: [(&str, &[&str]); 14] = [
     // Headers of pictures are checked at validation.
     ("manifest", &["units", "colour", "optics", "maps"]),
     ("needs", &["manifest", "optics", "maps"]),
+    // No tier: the judge shares constants, Fresnel and the facets' distribution only.
+    (
+        "reference",
+        &[
+            "optics::fresnel::fresnel_dielectric",
+            "optics::microfacet::d_ggx",
+        ],
+    ),
     ("sample", &["maps", "colour", "units"]),
     ("develop", &["colour"]),
     ("sheet", &["bevy", "needs", "manifest", "maps", "optics"]),
