@@ -233,6 +233,11 @@ impl Hand {
                 }
                 self.enter(next);
             }
+            Intent::StepTier(by) => {
+                let shown: Vec<Tier> = Tier::ALL.into_iter().filter(|t| t.is_shown()).collect();
+                let at = shown.iter().position(|tier| *tier == self.tier);
+                self.tier = shown[wrapped(at.unwrap_or_default(), by, shown.len())];
+            }
             Intent::Caption | Intent::Keys | Intent::Fullscreen | Intent::Quit => {}
         }
     }
@@ -330,6 +335,11 @@ impl Hand {
     /// Whether the cheapest tier is good enough just now.
     pub fn is_hurried(&self) -> bool {
         self.hurried
+    }
+
+    /// The tier that was asked for, which a hurried picture may not have.
+    pub fn tier(&self) -> Tier {
+        self.tier
     }
 
     /// Where the lamp stands that the hand moves.

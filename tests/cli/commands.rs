@@ -48,11 +48,14 @@ fn wrong_usage_ends_with_2() {
 #[test]
 fn tiers_that_are_not_shown_name_those_that_are() {
     let stderr = code(
-        &run(&["render", "x", "--out", "x.png", "--tier", "isle"]),
+        &run(&["render", "x", "--out", "x.png", "--tier", "study"]),
         2,
     );
-    assert!(stderr.contains("isle"), "{stderr}");
-    assert!(stderr.contains("draft, gallery, lambert"), "{stderr}");
+    assert!(stderr.contains("study"), "{stderr}");
+    assert!(
+        stderr.contains("draft, gallery, isle, lambert, phong, blinn-phong"),
+        "{stderr}"
+    );
 }
 
 #[test]
