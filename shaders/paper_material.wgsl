@@ -12,6 +12,34 @@
     optical_depth, particle_shares, through_study,
 }
 
+#ifdef TIER_ISLE
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_isle}
+#endif
+#ifdef TIER_PHONG
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_phong, off_mirror}
+#endif
+#ifdef TIER_PHONG_PLAIN
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_phong_plain, off_mirror}
+#endif
+#ifdef TIER_BLINN_PHONG
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_blinn_phong}
+#endif
+#ifdef TIER_BLINN_PHONG_PLAIN
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_blinn_phong_plain}
+#endif
+#ifdef TIER_COOK_TORRANCE
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_cook_torrance}
+#endif
+#ifdef TIER_COOK_TORRANCE_GAUSS
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_cook_torrance_gauss}
+#endif
+#ifdef TIER_COOK_TORRANCE_BLINN
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_cook_torrance_blinn}
+#endif
+#ifdef TIER_OREN_NAYAR
+#import "embedded://recto/paper_baselines.wgsl"::{brdf_oren_nayar}
+#endif
+
 // Largest value a half-float target holds.
 const RADIANCE_MAX: f32 = 65504.0;
 
@@ -389,6 +417,33 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
                     s, facing(n, incidence.l, v), interface_at(row, mu_i), at_o, mean, paper.split,
                     depth, particle, shares,
                 );
+#endif
+#ifdef TIER_ISLE
+                let f = brdf_isle(s, facing(n, incidence.l, v));
+#endif
+#ifdef TIER_PHONG
+                let f = brdf_phong(s, off_mirror(n, incidence.l, v));
+#endif
+#ifdef TIER_PHONG_PLAIN
+                let f = brdf_phong_plain(s, facing(n, incidence.l, v), off_mirror(n, incidence.l, v));
+#endif
+#ifdef TIER_BLINN_PHONG
+                let f = brdf_blinn_phong(s, facing(n, incidence.l, v));
+#endif
+#ifdef TIER_BLINN_PHONG_PLAIN
+                let f = brdf_blinn_phong_plain(s, facing(n, incidence.l, v));
+#endif
+#ifdef TIER_COOK_TORRANCE
+                let f = brdf_cook_torrance(s, facing(n, incidence.l, v));
+#endif
+#ifdef TIER_COOK_TORRANCE_GAUSS
+                let f = brdf_cook_torrance_gauss(s, facing(n, incidence.l, v));
+#endif
+#ifdef TIER_COOK_TORRANCE_BLINN
+                let f = brdf_cook_torrance_blinn(s, facing(n, incidence.l, v));
+#endif
+#ifdef TIER_OREN_NAYAR
+                let f = brdf_oren_nayar(s, facing(n, incidence.l, v));
 #endif
                 radiance += f * incidence.e * mu_i;
             }

@@ -216,8 +216,10 @@ fn side_needs(
             maps.push(MapUse::Albedo(side.albedo.clone()));
             relief(side, directional, &mut terms, &mut maps, &mut say);
             if let Some(roughness) = &side.roughness {
-                if terms.specular {
-                    say("roughness map, for the specular lobe".into());
+                // Their diffuse terms know of roughness too.
+                let rough_diffuse = matches!(tier, Tier::OrenNayar | Tier::Isle);
+                if terms.specular || rough_diffuse {
+                    say("roughness map, for the tier's lobes".into());
                     terms.roughness_map = true;
                     maps.push(MapUse::Roughness(roughness.clone()));
                 } else {

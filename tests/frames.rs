@@ -8,6 +8,8 @@ mod room;
 #[path = "support/show_through.rs"]
 mod show_through;
 
+#[path = "frames/baselines.rs"]
+mod baselines;
 #[path = "frames/colour.rs"]
 mod colour;
 #[path = "frames/lamps.rs"]

@@ -26,6 +26,8 @@ use recto::{
     },
 };
 
+#[path = "parity/baselines.rs"]
+mod baselines;
 #[path = "support/gpu.rs"]
 mod gpu;
 #[path = "parity/interfaces.rs"]

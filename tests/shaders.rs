@@ -12,13 +12,14 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use recto::{
     manifest::{MAX_LAMPS, MAX_OVERLAYS},
     optics::{
+        baselines::BASE_MIN,
         ink::FILM_TERMS,
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
         table::{ALPHA_FIT_MIN, LOST_TERMS, MU_TERMS},
     },
     sheet::{
-        PAPER_BSDF, PAPER_MATERIAL,
+        PAPER_BASELINES, PAPER_BSDF, PAPER_MATERIAL,
         uniform::{
             FilmUniform, InterfaceUniform, LightUniform, MapPlace, PaperUniform, SplitUniform,
             ThroughUniform,
@@ -38,9 +39,15 @@ fn validate(module: &naga::Module) -> Result<(), String> {
         .map_err(|error| format!("{error:?}"))
 }
 
+/// All plain WGSL, in the order in which it is read.
+fn physics() -> String {
+    format!("{PAPER_BSDF}\n{PAPER_BASELINES}")
+}
+
 #[test]
 fn the_physics_parses_and_validates_by_itself() {
-    let module = naga::front::wgsl::parse_str(PAPER_BSDF).expect("plain WGSL");
+    validate(&parse(PAPER_BSDF)).unwrap();
+    let module = parse(&physics());
     validate(&module).unwrap();
     assert_eq!(module.global_variables.len(), 0, "it binds nothing");
     assert_eq!(
@@ -49,7 +56,7 @@ fn the_physics_parses_and_validates_by_itself() {
         "entry points belong to the glue"
     );
     assert!(
-        !PAPER_BSDF
+        !physics()
             .lines()
             .any(|line| line.trim_start().starts_with('#')),
         "directives belong to the glue"
@@ -127,7 +134,7 @@ fn members_that_end_in_a_digit(text: &str) -> Vec<String> {
 #[test]
 fn no_struct_member_ends_in_a_digit() {
     // Bevy's composer breaks on one with a type error, and the app then shows no sheet.
-    for text in [PAPER_BSDF, PAPER_MATERIAL] {
+    for text in [PAPER_BSDF, PAPER_BASELINES, PAPER_MATERIAL] {
         assert_eq!(members_that_end_in_a_digit(text), [""; 0]);
     }
     let bad =
@@ -138,7 +145,7 @@ fn no_struct_member_ends_in_a_digit() {
 /// Each part of the physics with the source that its heading names.
 fn twin_sections() -> Vec<(String, String)> {
     const HEADING: &str = "// Twins of src/optics/";
-    PAPER_BSDF
+    physics()
         .split(HEADING)
         .skip(1)
         .map(|section| {
@@ -233,6 +240,7 @@ fn constants_of_the_shaders_are_those_of_the_sources() {
     assert_eq!(constant(PAPER_BSDF, "ALPHA_MIN"), ALPHA_MIN);
     assert_eq!(constant(PAPER_BSDF, "MU_MIN"), MU_MIN);
     assert_eq!(constant(PAPER_BSDF, "ALPHA_FIT_MIN"), ALPHA_FIT_MIN);
+    assert_eq!(constant(PAPER_BASELINES, "BASE_MIN"), BASE_MIN);
 }
 
 /// Bytes of a value as the uniform buffer holds them.
@@ -471,7 +479,20 @@ fn members_out_of_place_are_found() {
     );
 }
 
+/// Where the glue differs by more than a call.
 const TIERS: [&str; 3] = ["TIER_LAMBERT", "TIER_DRAFT", "TIER_GALLERY"];
+/// These differ in the function that is called, and in nothing else.
+const BASELINES: [&str; 9] = [
+    "TIER_ISLE",
+    "TIER_PHONG",
+    "TIER_PHONG_PLAIN",
+    "TIER_BLINN_PHONG",
+    "TIER_BLINN_PHONG_PLAIN",
+    "TIER_COOK_TORRANCE",
+    "TIER_COOK_TORRANCE_GAUSS",
+    "TIER_COOK_TORRANCE_BLINN",
+    "TIER_OREN_NAYAR",
+];
 
 #[test]
 fn the_material_defines_what_the_glue_asks_for() {
@@ -481,13 +502,16 @@ fn the_material_defines_what_the_glue_asks_for() {
     let defined: BTreeSet<&str> = list.split('"').skip(1).step_by(2).collect();
     let asked: BTreeSet<&str> = DEFINITIONS.iter().copied().collect();
     assert_eq!(defined, asked);
-    assert!(TIERS.iter().all(|tier| asked.contains(tier)));
+    let tiers: BTreeSet<&str> = TIERS.into_iter().chain(BASELINES).collect();
+    let asked = asked.into_iter().filter(|name| name.starts_with("TIER_"));
+    assert_eq!(asked.collect::<BTreeSet<_>>(), tiers);
 }
 
 /// Whether a side can need these terms: see `side_needs` in src/needs.rs.
 fn can_occur(defined: &[&str]) -> bool {
     let has = |name| defined.contains(&name);
-    let tiers = TIERS.iter().filter(|tier| has(tier)).count();
+    let tiers = TIERS.iter().chain([&BASELINES[0]]);
+    let tiers = tiers.filter(|tier| has(tier)).count();
     // A side without maps is bare paper, nothing of the Lambert tier is rough, and the draft
     // tier takes a rectangle for a point.
     tiers == 1
@@ -526,7 +550,12 @@ fn every_four(sets: impl Iterator<Item = u32>, bits: u32) -> Vec<u32> {
 /// others declare, so that a fault shows in some four of them.
 #[test]
 fn the_glue_is_valid_for_every_four_terms() {
-    let names = &*DEFINITIONS;
+    // One baseline stands for all of them: below they take turns.
+    let names: Vec<&str> = DEFINITIONS
+        .iter()
+        .copied()
+        .filter(|name| !BASELINES[1..].contains(name))
+        .collect();
     let bits = names.len() as u32;
     let defined = |set: u32| -> Vec<&str> {
         let on = (0..names.len()).filter(|i| set >> i & 1 == 1);
@@ -541,8 +570,11 @@ fn the_glue_is_valid_for_every_four_terms() {
         for share in needs.chunks(needs.len().div_ceil(threads)) {
             scope.spawn(move || {
                 let mut composer = Composer::new("");
-                for &set in share {
-                    let defined = defined(set);
+                for (turn, &set) in share.iter().enumerate() {
+                    let mut defined = defined(set);
+                    if let Some(tier) = defined.iter_mut().find(|name| **name == BASELINES[0]) {
+                        *tier = BASELINES[turn % BASELINES.len()];
+                    }
                     let module = composer.compose(&defined).unwrap();
                     validate(&module).unwrap_or_else(|error| panic!("{defined:?}: {error}"));
                     assert_eq!(module.entry_points.len(), 2, "{defined:?}");
@@ -551,6 +583,17 @@ fn the_glue_is_valid_for_every_four_terms() {
         }
     });
     eprintln!("{} shaders composed and validated", needs.len());
+}
+
+#[test]
+fn the_glue_is_valid_for_every_baseline() {
+    let mut composer = Composer::new("");
+    for tier in BASELINES {
+        for more in [&[][..], &["ALBEDO_MAP", "ROUGHNESS_MAP", "AMBIENT"]] {
+            let module = composer.compose(&[&[tier], more].concat()).unwrap();
+            validate(&module).unwrap_or_else(|error| panic!("{tier}: {error}"));
+        }
+    }
 }
 
 #[test]

@@ -2,7 +2,6 @@
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use super::Failure;
 use crate::{
     manifest::{SideName, overrides::Overrides},
     maps::MAX_SIDE,
@@ -66,18 +65,6 @@ fn side() -> impl TypedValueParser<Value = SideName> {
 /// The names of all tiers.
 pub fn tier() -> impl TypedValueParser<Value = Tier> {
     PossibleValuesParser::new(Tier::ALL.map(Tier::name)).try_map(|name| name.parse::<Tier>())
-}
-
-/// Refuses tiers that this version does not have.
-pub fn shown(tier: Tier) -> Result<Tier, Failure> {
-    if tier.is_shown() {
-        return Ok(tier);
-    }
-    let shown = Tier::ALL.into_iter().filter(|tier| tier.is_shown());
-    Err(Failure::Usage(format!(
-        "the tier {tier} comes with a later version; choose one of {}",
-        shown.map(Tier::name).collect::<Vec<_>>().join(", ")
-    )))
 }
 
 /// `WIDTHxHEIGHT` in pixels.

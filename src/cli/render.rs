@@ -78,7 +78,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     if arguments.compare.is_some() {
         return Err(later::not_yet("--compare"));
     }
-    let tier = options::shown(arguments.tier)?;
+    let tier = arguments.tier;
     let (all, size, out) = (arguments.all_scenes, arguments.size, arguments.out);
     let format = if all { Format::Png } else { Format::of(&out)? };
 

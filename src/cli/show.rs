@@ -47,7 +47,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     }
     let options = ShowOptions {
         scene: arguments.scene,
-        tier: options::shown(arguments.tier)?,
+        tier: arguments.tier,
         display_mm: arguments.display_mm,
         size: arguments.size,
         fullscreen: arguments.fullscreen,

@@ -10,9 +10,10 @@
 //! | `e`, `t` | directional albedo of the interface; what it lets through |
 //!
 //! Directions point away from the surface, in the *local frame*: x right, y up on the side
-//! that is looked at, z out of it. Functions with a twin in `shaders/paper_bsdf.wgsl` carry
-//! the twin's name and order.
+//! that is looked at, z out of it. Functions with a twin in `shaders/paper_bsdf.wgsl` (or
+//! `paper_baselines.wgsl`) carry the twin's name and order.
 
+pub mod baselines;
 pub mod fresnel;
 pub mod ink;
 pub mod lamp;

@@ -24,23 +24,31 @@ pub enum Tier {
     Gallery,
     /// Ink as a layer of its own, single scattering apart, light through both sides.
     Study,
-    /// The shader of Apollonio et al. 2021. Not shown yet.
+    /// The shader of Apollonio et al. 2021: Burley's diffuse term, GGX, Schlick.
     Isle,
     /// A perfect diffuser with the map's albedo.
     Lambert,
-    /// Not shown yet.
+    /// Lambert and Phong's lobe, normalised.
     Phong,
-    /// Not shown yet.
+    /// Lambert and Blinn's lobe, normalised.
     BlinnPhong,
-    /// Not shown yet.
+    /// Lambert and Cook & Torrance's facets with Beckmann's distribution.
     CookTorrance,
-    /// Not shown yet.
+    /// Rough diffusers by Oren & Nayar 1994, the qualitative model.
     OrenNayar,
+    /// Phong's highlight as he wrote it, which is no BRDF.
+    PhongPlain,
+    /// Blinn's highlight as he wrote it, which is no BRDF.
+    BlinnPhongPlain,
+    /// Cook & Torrance with a Gaussian distribution.
+    CookTorranceGauss,
+    /// Cook & Torrance with Blinn's distribution.
+    CookTorranceBlinn,
 }
 
 impl Tier {
     /// Every tier, in the order of the command line's help.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 13] = [
         Self::Draft,
         Self::Gallery,
         Self::Study,
@@ -50,6 +58,10 @@ impl Tier {
         Self::BlinnPhong,
         Self::CookTorrance,
         Self::OrenNayar,
+        Self::PhongPlain,
+        Self::BlinnPhongPlain,
+        Self::CookTorranceGauss,
+        Self::CookTorranceBlinn,
     ];
 
     /// The name on the command line.
@@ -64,15 +76,11 @@ impl Tier {
             Self::BlinnPhong => "blinn-phong",
             Self::CookTorrance => "cook-torrance",
             Self::OrenNayar => "oren-nayar",
+            Self::PhongPlain => "phong-plain",
+            Self::BlinnPhongPlain => "blinn-phong-plain",
+            Self::CookTorranceGauss => "cook-torrance-gauss",
+            Self::CookTorranceBlinn => "cook-torrance-blinn",
         }
-    }
-
-    /// Whether this version can show it.
-    pub fn is_shown(self) -> bool {
-        matches!(
-            self,
-            Self::Draft | Self::Gallery | Self::Study | Self::Lambert
-        )
     }
 
     /// Whether what the surface reflects is missing underneath: gallery and study.

@@ -16,6 +16,15 @@ pub const PAPER_BSDF: &str = include_str!("../../shaders/paper_bsdf.wgsl");
 /// The glue around it.
 pub const PAPER_MATERIAL: &str = include_str!("../../shaders/paper_material.wgsl");
 
+/// The baselines, which are read behind the physics.
+pub const PAPER_BASELINES: &str = include_str!("../../shaders/paper_baselines.wgsl");
+/// The same as a module of its own: plain WGSL has no imports.
+pub const PAPER_BASELINES_MODULE: &str = concat!(
+    "#import \"embedded://recto/paper_bsdf.wgsl\"::{INV_PI, MU_MIN, Facing, Surface, d_ggx, v_smith, \
+     fresnel_schlick}\n",
+    include_str!("../../shaders/paper_baselines.wgsl")
+);
+
 /// Registers the shaders and the sheet's material.
 pub struct SheetPlugin;
 
@@ -24,6 +33,7 @@ impl Plugin for SheetPlugin {
         let registry = app.world_mut().resource_mut::<EmbeddedAssetRegistry>();
         for (path, text) in [
             ("recto/paper_bsdf.wgsl", PAPER_BSDF),
+            ("recto/paper_baselines.wgsl", PAPER_BASELINES_MODULE),
             ("recto/paper_material.wgsl", PAPER_MATERIAL),
         ] {
             registry.insert_asset(path.into(), Path::new(path), text.as_bytes());

@@ -3,9 +3,12 @@
 use bevy::prelude::*;
 
 use super::hand::Hand;
-use crate::stage::{
-    Shown,
-    legend::{Face, TextCamera, line, text_size},
+use crate::{
+    optics::tier::Tier,
+    stage::{
+        Shown,
+        legend::{Face, TextCamera, line, text_size},
+    },
 };
 
 /// Widest line, in heights of its text.
@@ -16,7 +19,7 @@ const TITLE: f32 = 1.25;
 const QUIET: f32 = 0.85;
 
 /// What the keys do, for the list of them and for the manual.
-pub const KEYS: [(&str, &str); 14] = [
+pub const KEYS: [(&str, &str); 15] = [
     ("drag", "turn the sheet; move it when zoomed in"),
     ("wheel, + −", "zoom"),
     ("double click", "true size and back"),
@@ -29,6 +32,7 @@ pub const KEYS: [(&str, &str); 14] = [
     ("[  ]", "fainter, stronger overlays"),
     ("N, P", "next scene, back"),
     ("H", "the scene as it was"),
+    ("T, Shift + T", "next tier of accuracy, back"),
     ("C", "caption"),
     ("F11, Esc", "full screen, quit"),
 ];
@@ -168,7 +172,12 @@ pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
         Some(false) => "true size, if the display has 96 pixels an inch",
         None => "",
     };
-    lines.push(joined(&[shown.scene.side.word(), state, &lamp, size]));
+    // What everybody sees who asked for nothing needs no name.
+    let tier = match hand.tier() {
+        tier if tier == Tier::default() => "",
+        tier => tier.name(),
+    };
+    lines.push(joined(&[shown.scene.side.word(), state, &lamp, size, tier]));
     lines.retain(|line| !line.is_empty());
     lines
 }

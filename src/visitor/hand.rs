@@ -233,6 +233,10 @@ impl Hand {
                 }
                 self.enter(next);
             }
+            Intent::StepTier(by) => {
+                let at = Tier::ALL.iter().position(|tier| *tier == self.tier);
+                self.tier = Tier::ALL[wrapped(at.unwrap_or_default(), by, Tier::ALL.len())];
+            }
             Intent::Caption | Intent::Keys | Intent::Fullscreen | Intent::Quit => {}
         }
     }
@@ -330,6 +334,11 @@ impl Hand {
     /// Whether the cheapest tier is good enough just now.
     pub fn is_hurried(&self) -> bool {
         self.hurried
+    }
+
+    /// The tier that was asked for, which a hurried picture may not have.
+    pub fn tier(&self) -> Tier {
+        self.tier
     }
 
     /// Where the lamp stands that the hand moves.

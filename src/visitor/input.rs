@@ -255,6 +255,7 @@ impl Devices {
                 "]" => Intent::Opacity(OPACITY_STEP),
                 "n" => Intent::StepScene(1),
                 "p" => Intent::StepScene(-1),
+                "t" => Intent::StepTier(if self.shift { -1 } else { 1 }),
                 "c" => Intent::Caption,
                 "?" => Intent::Keys,
                 _ => return None,

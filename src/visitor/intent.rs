@@ -50,6 +50,8 @@ pub enum Intent {
     Opacity(f64),
     /// To another scene, forwards (1) or back (−1).
     StepScene(i32),
+    /// To another tier of accuracy, forwards (1) or back (−1).
+    StepTier(i32),
     /// Shows or hides the caption.
     Caption,
     /// Shows or hides the list of keys.

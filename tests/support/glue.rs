@@ -7,13 +7,16 @@ use bevy::{
     render::render_resource::WgpuFeatures,
     shader::{Shader, ShaderCache, ShaderCacheSource, ShaderDefVal},
 };
-use recto::sheet::{PAPER_BSDF, PAPER_MATERIAL};
+use recto::sheet::{PAPER_BASELINES_MODULE, PAPER_BSDF, PAPER_MATERIAL};
 
 const PHYSICS: AssetId<Shader> = AssetId::Uuid {
     uuid: Uuid::from_u128(1),
 };
 const GLUE: AssetId<Shader> = AssetId::Uuid {
     uuid: Uuid::from_u128(2),
+};
+const BASELINES: AssetId<Shader> = AssetId::Uuid {
+    uuid: Uuid::from_u128(3),
 };
 /// The bind group that Bevy gives to materials.
 const MATERIAL_BIND_GROUP: u32 = bevy::pbr::MATERIAL_BIND_GROUP_INDEX as u32;
@@ -35,6 +38,11 @@ impl Composer {
         let glue = format!("{PAPER_MATERIAL}\n{more}");
         for (id, text, name) in [
             (PHYSICS, PAPER_BSDF.to_owned(), "paper_bsdf"),
+            (
+                BASELINES,
+                PAPER_BASELINES_MODULE.to_owned(),
+                "paper_baselines",
+            ),
             (GLUE, glue, "paper_material"),
         ] {
             let path = format!("embedded://recto/{name}.wgsl");
