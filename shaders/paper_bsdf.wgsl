@@ -200,6 +200,8 @@ struct Light {
     cos_falloff: f32,
     half_edge_v: vec3<f32>,
     distance_squared_min: f32,
+    // Rings of samples of a disc; 0 for any other lamp.
+    rings: u32,
 }
 
 struct Incidence {
@@ -226,5 +228,18 @@ fn light_rectangle(light: Light, p: vec3<f32>, u: vec2<f32>, v: vec2<f32>) -> In
     let distance_squared = dot(towards, towards);
     let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
     let emits = max(-dot(light.axis, l), 0.0) * u.y * v.y;
+    return Incidence(l, light.amount * (emits / max(distance_squared, light.distance_squared_min)));
+}
+
+// A disc's radii are its half edges. `ring` is a node on [−1, 1] and its weight, `spoke` the unit
+// vector of one of the 4 azimuths per ring and ring.
+fn light_disc(light: Light, p: vec3<f32>, ring: vec2<f32>, spoke: vec2<f32>) -> Incidence {
+    let r = sqrt(0.5 + 0.5 * ring.x);
+    let place = light.place + (light.half_edge_u * spoke.x + light.half_edge_v * spoke.y) * r;
+    let towards = place - p;
+    let distance_squared = dot(towards, towards);
+    let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
+    let share = ring.y / (4.0 * f32(light.rings));
+    let emits = max(-dot(light.axis, l), 0.0) * share;
     return Incidence(l, light.amount * (emits / max(distance_squared, light.distance_squared_min)));
 }

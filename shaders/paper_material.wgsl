@@ -6,7 +6,8 @@
     ALPHA_MIN, INV_PI, MU_MIN,
     Facing, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Surface,
     albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing, fit_powers, interface_at,
-    interface_mean_at, interface_row, light_distant, light_punctual, light_rectangle,
+    interface_mean_at, interface_row, light_disc, light_distant, light_punctual,
+    light_rectangle,
 }
 
 // Largest value a half-float target holds.
@@ -54,8 +55,9 @@ struct Paper {
     interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,
-    // Nodes and weights (xy) of the rules of 2 to 7 points.
-    quadrature: array<vec4<f32>, 27>,
+    // Of the rules of 1 to 7 points: nodes and weights (xy), and the azimuths of the first quarter
+    // of a disc of as many rings (zw).
+    quadrature: array<vec4<f32>, 28>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paper: Paper;
@@ -282,14 +284,23 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         let light = paper.lights[k];
 #endif
 #ifdef AREA_LAMPS
-        let samples = max(light.grid * light.grid, 1u);
+        let spokes = 4u * light.rings;
+        let samples = max(light.grid * light.grid + light.rings * spokes, 1u);
         for (var i = 0u; i < samples; i++) {
             var incidence: Incidence;
-            if light.grid == 0u {
+            if light.rings > 0u {
+                let rule = light.rings * (light.rings - 1u) / 2u;
+                let ring = paper.quadrature[rule + i / spokes].xy;
+                let quarter = i % spokes / light.rings;
+                var spoke = paper.quadrature[rule + i % light.rings].zw;
+                spoke = select(spoke, vec2(-spoke.y, spoke.x), (quarter & 1u) == 1u);
+                spoke = select(spoke, -spoke, quarter >= 2u);
+                incidence = light_disc(light, in.local, ring, spoke);
+            } else if light.grid == 0u {
                 incidence = light_punctual(light, in.local);
             } else {
-                // The rule of n points begins behind those of 2 … n − 1.
-                let rule = light.grid * (light.grid - 1u) / 2u - 1u;
+                // The rule of n points begins behind those of 1 … n − 1.
+                let rule = light.grid * (light.grid - 1u) / 2u;
                 let u = paper.quadrature[rule + i % light.grid].xy;
                 let v = paper.quadrature[rule + i / light.grid].xy;
                 incidence = light_rectangle(light, in.local, u, v);

@@ -186,7 +186,7 @@ fn side_needs(
     terms.area_lamps = tier != Tier::Draft
         && shown
             .iter()
-            .any(|kind| matches!(kind, LampKind::Rectangle { .. }));
+            .any(|kind| matches!(kind, LampKind::Rectangle { .. } | LampKind::Disc { .. }));
     terms.distant_lamps = shown
         .iter()
         .all(|kind| matches!(kind, LampKind::Distant { .. }));
@@ -243,9 +243,9 @@ fn side_needs(
     if tier == Tier::Draft
         && shown
             .iter()
-            .any(|kind| matches!(kind, LampKind::Rectangle { .. }))
+            .any(|kind| matches!(kind, LampKind::Rectangle { .. } | LampKind::Disc { .. }))
     {
-        say("rectangle lamps as points: the draft tier".into());
+        say("rectangle and disc lamps as points: the draft tier".into());
     }
     SideNeeds {
         side: name,

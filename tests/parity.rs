@@ -13,7 +13,7 @@ use recto::{
         fresnel::{fresnel_dielectric, fresnel_schlick, normal_reflectance},
         lamp::{Incidence, Light, Shape},
         microfacet::{d_ggx, v_smith},
-        quadrature::{GRIDS, gauss_legendre},
+        quadrature::{GRIDS, disc_rule, gauss_legendre},
         table::{
             ALPHA_FIT_MIN, AlphaPolynomial, Interface, InterfaceMean, InterfaceTable, LOST_TERMS,
             MU_TERMS,

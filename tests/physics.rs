@@ -7,7 +7,7 @@ use recto::{
     colour,
     manifest::{
         Exhibit, LampKind,
-        lighting::{direction, grid_for},
+        lighting::{direction, grid_for, rings_for},
     },
     maps::encode::save_png_rgb8,
     optics::{
@@ -450,6 +450,82 @@ fn a_rectangle_below_the_horizon_shines_with_its_upper_part() {
     assert!((sampled / exact - 1.0).abs() < 4e-2, "{sampled} {exact}");
 }
 
+/// A disc of unit luminance, sampled as a scene samples it.
+fn disc(centre: DVec3, axis: DVec3, radius: f64) -> Light {
+    let u = axis.any_orthonormal_vector();
+    Light {
+        shape: Shape::Disc {
+            centre,
+            axis,
+            half_u: u * radius,
+            half_v: axis.cross(u) * radius,
+            rings: rings_for(2.0 * radius / centre.length()),
+        },
+        amount: DVec3::splat(PI * radius * radius),
+    }
+}
+
+/// Illuminance of a disc of unit luminance at the origin with normal z, by a fine midpoint rule.
+fn fine_disc(centre: DVec3, axis: DVec3, radius: f64) -> f64 {
+    const STEPS: u32 = 400;
+    let u = axis.any_orthonormal_vector();
+    let v = axis.cross(u);
+    let mut sum = 0.0;
+    for ring in 0..STEPS {
+        let r = radius * ((f64::from(ring) + 0.5) / f64::from(STEPS)).sqrt();
+        for spoke in 0..STEPS {
+            let (sin, cos) = ((f64::from(spoke) + 0.5) / f64::from(STEPS) * 2.0 * PI).sin_cos();
+            let to = centre + (u * cos + v * sin) * r;
+            let l = to.normalize();
+            sum += l.z.max(0.0) * (-axis.dot(l)).max(0.0) / to.length_squared();
+        }
+    }
+    sum * PI * radius * radius / f64::from(STEPS * STEPS)
+}
+
+#[test]
+fn discs_meet_their_closed_form_on_the_axis_and_a_fine_integral_off_it() {
+    // Radius over distance, and the relative error that is expected of so few samples.
+    for (radius, expected) in [
+        (10.0, 1e-5),
+        (140.0, 5e-4),
+        (450.0, 5e-4),
+        (900.0, 5e-4),
+        (3000.0, 2e-2),
+    ] {
+        let d = 1000.0;
+        // E = π L r²/(r² + d²) (configuration factor B-13 of Howell's catalogue, times π).
+        let exact = PI * radius * radius / (radius * radius + d * d);
+        let sampled = disc(DVec3::Z * d, -DVec3::Z, radius).illuminance(DVec3::ZERO, DVec3::Z);
+        let fine = fine_disc(DVec3::Z * d, -DVec3::Z, radius);
+        assert!(
+            (fine / exact - 1.0).abs() < 1e-4,
+            "{radius}: {fine} {exact}"
+        );
+        let error = (sampled.x / exact - 1.0).abs();
+        eprintln!("disc of radius {radius} at {d}: {error:.1e} off");
+        assert!(error < expected, "{radius}: {sampled}, not {exact}");
+    }
+    let tilted = DVec3::new(-0.6, 0.0, -0.8);
+    for (centre, axis, radius, expected) in [
+        (DVec3::new(600.0, 0.0, 800.0), tilted, 120.0, 5e-4),
+        (DVec3::new(600.0, 0.0, 800.0), tilted, 400.0, 5e-4),
+        (DVec3::new(300.0, -500.0, 400.0), -DVec3::Z, 300.0, 5e-4),
+        (DVec3::new(900.0, 0.0, 150.0), -DVec3::X, 100.0, 5e-4),
+    ] {
+        let sampled = disc(centre, axis, radius)
+            .illuminance(DVec3::ZERO, DVec3::Z)
+            .x;
+        let exact = fine_disc(centre, axis, radius);
+        let error = (sampled / exact - 1.0).abs();
+        eprintln!("disc of radius {radius} at {centre}: {error:.1e} off");
+        assert!(error < expected, "{centre}: {sampled}, not {exact}");
+    }
+    // It shines to one side only.
+    let behind = disc(DVec3::Z * 500.0, DVec3::Z, 100.0);
+    assert_eq!(behind.illuminance(DVec3::ZERO, DVec3::Z), DVec3::ZERO);
+}
+
 #[test]
 fn the_strangest_lamps_stay_finite() {
     let places = [
@@ -479,6 +555,8 @@ fn the_strangest_lamps_stay_finite() {
                 },
                 rectangle(0.0),
                 rectangle(1e5),
+                disc(position, axis, 0.0).shape,
+                disc(position, axis, 1e5).shape,
             ] {
                 let lamp = Light {
                     shape,

@@ -289,6 +289,7 @@ impl Sentinel {
             cos_falloff: self.f32(),
             half_edge_v: self.vec3(),
             distance_squared_min: self.f32(),
+            rings: self.u32(),
         })
     }
 

@@ -286,7 +286,7 @@ pub enum LampKind {
         aim_mm: DVec3,
         size_mm: DVec2,
     },
-    /// One-sided Lambertian disc. Not shown yet.
+    /// One-sided Lambertian disc.
     Disc {
         luminance: Nits,
         position_mm: DVec3,
@@ -311,8 +311,9 @@ impl LampKind {
             | Self::Point { .. }
             | Self::Spot { .. }
             | Self::Rectangle { .. }
+            | Self::Disc { .. }
             | Self::LightTable { .. } => true,
-            Self::Disc { .. } | Self::Ies { .. } => false,
+            Self::Ies { .. } => false,
         }
     }
 

@@ -166,7 +166,17 @@ fn shape(kind: &LampKind) -> Option<(Shape, f64)> {
             let amount = luminance.0 * size_mm.x * size_mm.y;
             (rectangle(position_mm, aim_mm, size_mm), amount)
         }
-        LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => return None,
+        LampKind::Disc {
+            luminance,
+            position_mm,
+            aim_mm,
+            diameter_mm,
+        } => {
+            let radius = diameter_mm / 2.0;
+            let amount = luminance.0 * PI * radius * radius;
+            (disc(position_mm, aim_mm, radius), amount)
+        }
+        LampKind::Ies { .. } | LampKind::LightTable { .. } => return None,
     })
 }
 
@@ -183,6 +193,29 @@ fn rectangle(centre: DVec3, aim: DVec3, size_mm: DVec2) -> Shape {
         half_u,
         half_v,
         grid: grid_for(apparent),
+    }
+}
+
+/// A disc at `centre` that faces `aim`.
+fn disc(centre: DVec3, aim: DVec3, radius: f64) -> Shape {
+    let [u, v, axis] = area_axes(centre, aim).unwrap_or([DVec3::X, DVec3::Y, -DVec3::Z]);
+    let apparent = 2.0 * radius / (aim - centre).length().max(1e-6);
+    Shape::Disc {
+        centre,
+        axis,
+        half_u: u * radius,
+        half_v: v * radius,
+        rings: rings_for(apparent),
+    }
+}
+
+/// In how many rings to sample a disc whose diameter is `apparent` times its distance.
+pub fn rings_for(apparent: f64) -> u32 {
+    match apparent {
+        a if a < 0.3 => 1,
+        a if a < 1.0 => 2,
+        a if a < 2.0 => 3,
+        _ => 5,
     }
 }
 

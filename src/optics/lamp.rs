@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::quadrature::gauss_legendre;
+use super::quadrature::{disc_rule, gauss_legendre};
 
 /// Squared distances (mm²) are never taken smaller: 1e-4 m².
 pub const DISTANCE2_MIN_MM2: f64 = 100.0;
@@ -12,7 +12,7 @@ pub const DISTANCE2_MIN_MM2: f64 = 100.0;
 pub struct Light {
     pub shape: Shape,
     /// Linear sRGB amount: illuminance facing a distant lamp, otherwise intensity times
-    /// 1e6 mm²/m² (for a rectangle, luminance times area), already divided by the reference
+    /// 1e6 mm²/m² (for a rectangle or a disc, luminance times area), already divided by the reference
     /// illuminance and times π, so that a perfect diffuser facing that illuminance shows 1.
     pub amount: DVec3,
 }
@@ -42,6 +42,15 @@ pub enum Shape {
         half_u: DVec3,
         half_v: DVec3,
         grid: u32,
+    },
+    /// A Lambertian disc whose radius along two directions is `half_u` and `half_v`; it shines
+    /// along `axis` only. Sampled by [`disc_rule`] of `rings` rings.
+    Disc {
+        centre: DVec3,
+        axis: DVec3,
+        half_u: DVec3,
+        half_v: DVec3,
+        rings: u32,
     },
 }
 
@@ -85,6 +94,19 @@ impl Light {
                     let [v, weight_v] = gauss_legendre(grid, i / grid);
                     let sample = centre + half_u * u + half_v * v;
                     let share = weight_u * weight_v;
+                    self.inverse_square(sample - p, |l| share * (-axis.dot(l)).max(0.0))
+                })
+                .collect(),
+            Shape::Disc {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                rings,
+            } => (0..4 * rings * rings)
+                .map(|i| {
+                    let ([x, y], share) = disc_rule(rings, i);
+                    let sample = centre + half_u * x + half_v * y;
                     self.inverse_square(sample - p, |l| share * (-axis.dot(l)).max(0.0))
                 })
                 .collect(),
@@ -141,6 +163,19 @@ impl Light {
                 half_u: rotate * half_u,
                 half_v: rotate * half_v,
                 grid,
+            },
+            Shape::Disc {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                rings,
+            } => Shape::Disc {
+                centre: rotate * centre,
+                axis: rotate * axis,
+                half_u: rotate * half_u,
+                half_v: rotate * half_v,
+                rings,
             },
         };
         Self {

@@ -9,7 +9,7 @@ use crate::{
     maps::Coding,
     optics::{
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
-        quadrature::GAUSS_LEGENDRE,
+        quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
         table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
     },
 };
@@ -30,11 +30,12 @@ pub struct LightUniform {
     pub cos_falloff: f32,
     pub half_edge_v: Vec3,
     pub distance_squared_min: f32,
+    pub rings: u32,
 }
 
 impl LightUniform {
-    /// Narrows `light`. With `as_points`, a rectangle becomes a point in its middle that
-    /// shines like a Lambertian facet (the draft tier).
+    /// Narrows `light`. With `as_points`, a rectangle or disc becomes a point in its middle
+    /// that shines like a Lambertian facet (the draft tier).
     pub fn new(light: &Light, as_points: bool) -> Self {
         let amount = light.amount.as_vec3();
         let near = Self {
@@ -69,12 +70,16 @@ impl LightUniform {
                 cos_falloff: cos_falloff as f32,
                 ..near
             },
-            Shape::Rectangle { centre, axis, .. } if as_points => Self {
-                place: centre.as_vec3(),
-                axis: axis.as_vec3(),
-                cos_falloff: 0.0,
-                ..near
-            },
+            Shape::Rectangle { centre, axis, .. } | Shape::Disc { centre, axis, .. }
+                if as_points =>
+            {
+                Self {
+                    place: centre.as_vec3(),
+                    axis: axis.as_vec3(),
+                    cos_falloff: 0.0,
+                    ..near
+                }
+            }
             Shape::Rectangle {
                 centre,
                 axis,
@@ -85,6 +90,20 @@ impl LightUniform {
                 place: centre.as_vec3(),
                 axis: axis.as_vec3(),
                 grid,
+                half_edge_u: half_u.as_vec3(),
+                half_edge_v: half_v.as_vec3(),
+                ..near
+            },
+            Shape::Disc {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                rings,
+            } => Self {
+                place: centre.as_vec3(),
+                axis: axis.as_vec3(),
+                rings,
                 half_edge_u: half_u.as_vec3(),
                 half_edge_v: half_v.as_vec3(),
                 ..near
@@ -198,8 +217,11 @@ impl PaperUniform {
             *slot = LightUniform::new(&light.rotated(local_from_table), as_points);
         }
         self.ambient = ambient.as_vec3();
-        self.quadrature =
-            GAUSS_LEGENDRE.map(|[node, weight]| DVec4::new(node, weight, 0.0, 0.0).as_vec4());
+        let points = GRIDS.flat_map(|points| (0..points).map(move |i| (points, i)));
+        for (slot, (points, i)) in self.quadrature.iter_mut().zip(points) {
+            let ([node, weight], [cos, sin]) = (gauss_legendre(points, i), disc_spoke(points, i));
+            *slot = DVec4::new(node, weight, cos, sin).as_vec4();
+        }
     }
 
     /// Sets the place of the normal map, and how its texels are coded.

@@ -36,8 +36,10 @@ impl LampPlace {
             }),
             LampKind::Point { position_mm, .. }
             | LampKind::Spot { position_mm, .. }
-            | LampKind::Rectangle { position_mm, .. } => Self::towards(position_mm),
-            LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => None,
+            | LampKind::Rectangle { position_mm, .. }
+            | LampKind::Disc { position_mm, .. }
+            | LampKind::Ies { position_mm, .. } => Self::towards(position_mm),
+            LampKind::LightTable { .. } => None,
         }
     }
 
@@ -61,10 +63,12 @@ impl LampPlace {
             }
             LampKind::Point { position_mm, .. }
             | LampKind::Spot { position_mm, .. }
-            | LampKind::Rectangle { position_mm, .. } => {
+            | LampKind::Rectangle { position_mm, .. }
+            | LampKind::Disc { position_mm, .. }
+            | LampKind::Ies { position_mm, .. } => {
                 *position_mm = towards * position_mm.length();
             }
-            LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => {}
+            LampKind::LightTable { .. } => {}
         }
     }
 

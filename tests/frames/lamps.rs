@@ -116,6 +116,22 @@ fn a_rectangle_is_its_form_factor() {
 }
 
 #[test]
+fn a_disc_is_its_closed_form() {
+    // π L r²/(r² + d²), seen in a tier that samples the disc.
+    let lamp = "kind = \"disc\"\nnits = 2000\nposition_mm = [0, 0, 400]\ndiameter_mm = 300";
+    let fixture = Fixture::new(&manifest(&[lamp.into()], ""), plain);
+    let exhibit = fixture.exhibit();
+    let mut room = darkroom(1);
+    let scene = &exhibit.scenes[0];
+    let frame = picture(&mut room, &exhibit, scene, Tier::Lambert, [5, 5]);
+    let lux =
+        std::f64::consts::PI * 2000.0 * 150.0f64.powi(2) / (150.0f64.powi(2) + 400.0f64.powi(2));
+    let exact = lux / REFERENCE_LUX * f64::from(ALBEDO[0]);
+    let found = pixel(&frame, 2, 2)[0];
+    assert!((found / exact - 1.0).abs() < CLOSED_FORM, "{found} {exact}");
+}
+
+#[test]
 fn eight_lamps_add_up() {
     let one = "kind = \"distant\"\nlux_at_sheet = 100\nelevation_deg = 30\nazimuth_deg = ";
     let lamps: Vec<String> = (0..8).map(|i| format!("{one}{}", 45 * i)).collect();

@@ -193,7 +193,6 @@ fn what_is_not_shown_yet_is_named() {
     assert_eq!(
         read(FULL).not_shown_yet,
         [
-            "Lamp \"ring\": disc lamps are not shown yet.",
             "Lamp \"studio\": lamps by a photometric file are not shown yet.",
             "Drawing \"landscape\": transmission is not shown yet.",
             "Drawing \"landscape\": media maps do not change the picture yet.",
@@ -404,22 +403,6 @@ fn a_new_exhibit_takes_no_other_picture_of_the_same_name_and_tells_its_warnings(
         panic!("{warnings:?}")
     };
     assert!(warning.found.contains("taller in proportion"), "{warning}");
-}
-
-#[test]
-fn a_scene_lit_only_by_lamps_that_are_not_shown_is_a_warning() {
-    let ring = "[[lamp]]\nid = \"ring\"\nkind = \"disc\"\nnits = 1500\ndiameter_mm = 9\n\
-                position_mm = [0, 0, 500]\n";
-    let scene = format!("{SMALL}{ring}[[scene]]\nid = \"a\"\nlamps = [\"ring\"]\n");
-    let [warning] = &warnings(&scene)[..] else {
-        panic!()
-    };
-    assert!(
-        warning.contains("scene[0].lamps: found no light in this version"),
-        "{warning}"
-    );
-    let with_ambient = format!("{scene}ambient = {{ lux = 100 }}\n");
-    assert_eq!(warnings(&with_ambient), [""; 0]);
 }
 
 #[test]

@@ -12,8 +12,16 @@ struct LampCase {
 }
 
 impl LampCase {
-    /// Node and weight along both edges of a rectangle's sample in a rule of `grid` points.
-    fn rule(&self, grid: u32) -> [[f64; 2]; 2] {
+    /// Node and weight along both edges of a rectangle's sample, or a disc's ring and spoke.
+    fn rule(&self) -> [[f64; 2]; 2] {
+        let LightUniform { grid, rings, .. } = self.light;
+        if rings > 0 {
+            let ring = gauss_legendre(rings, self.sample / (4 * rings));
+            let ([x, y], _) = disc_rule(rings, self.sample);
+            let r = (0.5 + 0.5 * ring[0]).sqrt();
+            return [ring, [x / r, y / r]];
+        }
+        let grid = grid.max(1);
         [self.sample % grid, self.sample / grid].map(|i| gauss_legendre(grid, i))
     }
 }
@@ -24,6 +32,7 @@ pub enum Lamps {
     Distant,
     Punctual,
     Rectangle,
+    Disc,
 }
 
 impl Lamps {
@@ -32,6 +41,7 @@ impl Lamps {
             Self::Distant => "light_distant(x.light)",
             Self::Punctual => "light_punctual(x.light, x.p)",
             Self::Rectangle => "light_rectangle(x.light, x.p, x.u, x.v)",
+            Self::Disc => "light_disc(x.light, x.p, x.u, x.v)",
         }
     }
 }
@@ -59,7 +69,18 @@ fn lamp(seeded: &Seeded, lamps: Lamps) -> Light {
                 axis,
                 half_u: half_u * seeded.log_or_zero(0.05, 5e3),
                 half_v: axis.cross(half_u) * seeded.log_or_zero(0.05, 5e3),
-                grid: GRIDS.start() + (seeded.bits() % 6) as u32,
+                grid: seeded.pick(&GRIDS.collect::<Vec<_>>()),
+            }
+        }
+        (Lamps::Disc, _) => {
+            let radius = seeded.log_or_zero(0.05, 5e3);
+            let half_u = axis.any_orthonormal_vector();
+            Shape::Disc {
+                centre: position,
+                axis,
+                half_u: half_u * radius,
+                half_v: axis.cross(half_u) * radius,
+                rings: seeded.pick(&GRIDS.collect::<Vec<_>>()),
             }
         }
         (Lamps::Distant, _) | (_, 0) => Shape::Distant { towards: -axis },
@@ -107,7 +128,15 @@ fn lamp_cases(lamps: Lamps) -> Vec<LampCase> {
                     half_v: wide(narrow.half_edge_v),
                     grid,
                 },
+                Shape::Disc { rings, .. } => Shape::Disc {
+                    centre: wide(narrow.place),
+                    axis: wide(narrow.axis),
+                    half_u: wide(narrow.half_edge_u),
+                    half_v: wide(narrow.half_edge_v),
+                    rings,
+                },
             };
+            let samples = narrow.grid * narrow.grid + 4 * narrow.rings * narrow.rings;
             // Inside the lamp, at its very place, as well as anywhere.
             let p = seeded.pick(&[p.as_vec3(), p.as_vec3(), narrow.place, Vec3::ZERO]);
             LampCase {
@@ -117,7 +146,7 @@ fn lamp_cases(lamps: Lamps) -> Vec<LampCase> {
                     amount: wide(narrow.amount),
                 },
                 p,
-                sample: (seeded.bits() % u64::from(narrow.grid * narrow.grid).max(1)) as u32,
+                sample: (seeded.bits() % u64::from(samples.max(1))) as u32,
             }
         })
         .collect()
@@ -138,18 +167,29 @@ fn lamp_rounding(case: &LampCase, twin: &Incidence) -> (f64, f64) {
             centre,
             half_u,
             half_v,
-            grid,
             ..
         } => {
-            let [[u, weight_u], [v, weight_v]] = case.rule(grid);
+            let [[u, weight_u], [v, weight_v]] = case.rule();
             let towards = centre + half_u * u + half_v * v - wide(case.p);
             let share = weight_u * weight_v;
             let places = centre.abs() + half_u.abs() + half_v.abs() + wide(case.p).abs();
             (towards, places, share, 1.0)
         }
+        Shape::Disc {
+            centre,
+            half_u,
+            half_v,
+            rings,
+            ..
+        } => {
+            let ([x, y], share) = disc_rule(rings, case.sample);
+            let towards = centre + half_u * x + half_v * y - wide(case.p);
+            let places = centre.abs() + half_u.abs() + half_v.abs() + wide(case.p).abs();
+            (towards, places, share, 1.0)
+        }
     };
     let distance2 = towards.length_squared().max(1e-12);
-    // Only a rectangle's place is a sum of more than two: its rounding turns the direction.
+    // Only an area's place is a sum of more than two: its rounding turns the direction.
     let turned = UNIT_PRODUCT * places.length() / distance2.sqrt();
     let unshaped = case.twin.amount.max_element() * share
         / distance2.max(f64::from(case.light.distance_squared_min));
@@ -167,12 +207,7 @@ pub fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, Stri
             words.extend(case.p.to_array());
             // A vector of two begins at a multiple of eight bytes.
             words.push(0.0);
-            words.extend(
-                case.rule(case.light.grid.max(*GRIDS.start()))
-                    .concat()
-                    .iter()
-                    .map(|v| *v as f32),
-            );
+            words.extend(case.rule().concat().iter().map(|v| *v as f32));
             words
         })
         .collect();
@@ -221,7 +256,12 @@ pub fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, Stri
 #[test]
 fn lamps() {
     let gpu = Gpu::new();
-    for lamps in [Lamps::Distant, Lamps::Punctual, Lamps::Rectangle] {
+    for lamps in [
+        Lamps::Distant,
+        Lamps::Punctual,
+        Lamps::Rectangle,
+        Lamps::Disc,
+    ] {
         compare_lamps(&gpu, PAPER_BSDF, lamps).unwrap();
     }
 }

@@ -241,16 +241,6 @@ fn faults_say_what_is_there_and_what_was_meant() {
         ),
         (
             Overrides {
-                lamps: vec!["ring".into()],
-                ..Overrides::default()
-            },
-            &[
-                "--lamp: found \"ring\", a kind of lamp that is not shown yet; allowed: lamps of \
-               the kinds distant, point, spot, rectangle and light-table; choose one of these",
-            ],
-        ),
-        (
-            Overrides {
                 camera: text("true-size@0"),
                 ..Overrides::default()
             },

@@ -59,12 +59,12 @@ impl Validator<'_, '_> {
         let kelvin = Kelvin(raw.common.kelvin.map_or(DAYLIGHT_K, |kelvin| kelvin.0));
         let kind = self.lamp_kind(raw, trail)?;
         let unseen = match kind {
-            LampKind::Disc { .. } => Some("disc lamps are"),
             LampKind::Ies { .. } => Some("lamps by a photometric file are"),
             LampKind::Distant { .. }
             | LampKind::Point { .. }
             | LampKind::Spot { .. }
             | LampKind::Rectangle { .. }
+            | LampKind::Disc { .. }
             | LampKind::LightTable { .. } => None,
         };
         if let Some(unseen) = unseen {
