@@ -406,6 +406,27 @@ fn a_new_exhibit_takes_no_other_picture_of_the_same_name_and_tells_its_warnings(
 }
 
 #[test]
+fn watts_are_lumens_by_their_efficacy() {
+    let place = "position_mm = [0, 0, 500]";
+    for kind in [
+        "kind = \"point\"",
+        "kind = \"spot\"\nhotspot_deg = 10\nfalloff_deg = 20",
+        "kind = \"rectangle\"\nsize_mm = [100, 50]",
+        "kind = \"disc\"\ndiameter_mm = 80",
+    ] {
+        let kinds = ["lumen = 3600", "watts = 40\nefficacy_lm_per_w = 90"].map(|strength| {
+            read(&format!(
+                "{SMALL}[[lamp]]\nid = \"lamp\"\n{kind}\n{place}\n{strength}\n"
+            ))
+            .lamps[0]
+                .kind
+                .clone()
+        });
+        assert_eq!(kinds[0], kinds[1]);
+    }
+}
+
+#[test]
 fn a_light_table_anchors_the_exposure_by_what_comes_through_a_sheet() {
     let table = "[[lamp]]\nid = \"table\"\nkind = \"light-table\"\nnits = 1500\n";
     let scene = format!("{SMALL}{table}[[scene]]\nid = \"a\"\nlamps = [\"table\"]\n");

@@ -170,7 +170,7 @@ fn all_faults_are_found_at_once() {
         overlays: vec!["infraed".into(), "stains".into(), "infrared=2".into()],
         lamps: vec![
             "windw".into(),
-            "ring".into(),
+            "rin".into(),
             "kind=distant,lux_at_sheet=1,elevation_deg=95,azimut_deg=0".into(),
         ],
         camera: text("width_mm=0,true-size@x"),
@@ -186,7 +186,7 @@ fn all_faults_are_found_at_once() {
 
 #[test]
 fn faults_say_what_is_there_and_what_was_meant() {
-    let cases: [(Overrides, &[&str]); 8] = [
+    let cases: [(Overrides, &[&str]); 7] = [
         (
             Overrides {
                 scene: text("neer"),

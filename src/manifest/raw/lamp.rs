@@ -7,8 +7,8 @@ use super::{
     },
     RawWording,
     values::{
-        ConeDeg, DistanceMm, ElevationDeg, FilePath, Id, LampCandela, LampLumen, LampLux, LampMm,
-        LampNits, PositionMm, Temperature, TurnDeg,
+        ConeDeg, DistanceMm, ElevationDeg, FilePath, Id, LampCandela, LampEfficacy, LampLumen,
+        LampLux, LampMm, LampNits, LampWatts, PositionMm, Temperature, TurnDeg,
     },
 };
 
@@ -140,8 +140,17 @@ standing_lamp! {
             candela: LampCandela,
             /// Its whole light in lm.
             lumen: LampLumen,
+            /// The electric power that it takes, in W; its light follows by efficacy_lm_per_w.
+            watts: LampWatts,
+            /// With watts: the light that it gives for each watt, in lm/W, as its maker states:
+            /// about 15 for halogen, 80 to 150 for LED. 683 is the most there can be.
+            efficacy_lm_per_w: LampEfficacy,
         }
-        rules [Rule::ExactlyOne(&["lux_at_sheet", "candela", "lumen"])]
+        rules [
+            Rule::ExactlyOne(&["lux_at_sheet", "candela", "lumen", "watts"]),
+            Rule::Needs("watts", "efficacy_lm_per_w"),
+            Rule::Needs("efficacy_lm_per_w", "watts"),
+        ]
     }
 }
 
@@ -161,11 +170,20 @@ standing_lamp! {
             candela: LampCandela,
             /// Its whole light in lm.
             lumen: LampLumen,
+            /// The electric power that it takes, in W; its light follows by efficacy_lm_per_w.
+            watts: LampWatts,
+            /// With watts: the light that it gives for each watt, in lm/W, as its maker states:
+            /// about 15 for halogen, 80 to 150 for LED. 683 is the most there can be.
+            efficacy_lm_per_w: LampEfficacy,
             /// What it shines at, in mm from the centre of the sheet: right, up, towards the
             /// viewer. Without it: the centre.
             aim_mm: [PositionMm; 3],
         }
-        rules [Rule::ExactlyOne(&["lux_at_sheet", "candela", "lumen"])]
+        rules [
+            Rule::ExactlyOne(&["lux_at_sheet", "candela", "lumen", "watts"]),
+            Rule::Needs("watts", "efficacy_lm_per_w"),
+            Rule::Needs("efficacy_lm_per_w", "watts"),
+        ]
     }
 }
 
@@ -183,11 +201,20 @@ standing_lamp! {
             nits: LampNits,
             /// Its whole light in lm.
             lumen: LampLumen,
+            /// The electric power that it takes, in W; its light follows by efficacy_lm_per_w.
+            watts: LampWatts,
+            /// With watts: the light that it gives for each watt, in lm/W, as its maker states:
+            /// about 15 for halogen, 80 to 150 for LED. 683 is the most there can be.
+            efficacy_lm_per_w: LampEfficacy,
             /// What it faces, in mm from the centre of the sheet: right, up, towards the viewer.
             /// Without it: the centre.
             aim_mm: [PositionMm; 3],
         }
-        rules [Rule::ExactlyOne(&["lux_at_sheet", "nits", "lumen"])]
+        rules [
+            Rule::ExactlyOne(&["lux_at_sheet", "nits", "lumen", "watts"]),
+            Rule::Needs("watts", "efficacy_lm_per_w"),
+            Rule::Needs("efficacy_lm_per_w", "watts"),
+        ]
     }
 }
 
@@ -205,11 +232,20 @@ standing_lamp! {
             nits: LampNits,
             /// Its whole light in lm.
             lumen: LampLumen,
+            /// The electric power that it takes, in W; its light follows by efficacy_lm_per_w.
+            watts: LampWatts,
+            /// With watts: the light that it gives for each watt, in lm/W, as its maker states:
+            /// about 15 for halogen, 80 to 150 for LED. 683 is the most there can be.
+            efficacy_lm_per_w: LampEfficacy,
             /// What it faces, in mm from the centre of the sheet: right, up, towards the viewer.
             /// Without it: the centre.
             aim_mm: [PositionMm; 3],
         }
-        rules [Rule::ExactlyOne(&["lux_at_sheet", "nits", "lumen"])]
+        rules [
+            Rule::ExactlyOne(&["lux_at_sheet", "nits", "lumen", "watts"]),
+            Rule::Needs("watts", "efficacy_lm_per_w"),
+            Rule::Needs("efficacy_lm_per_w", "watts"),
+        ]
     }
 }
 

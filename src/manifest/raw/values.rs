@@ -54,6 +54,10 @@ number! {
     LampCandela = 0.000001 ..= 1000000000.0, "cd";
     /// A luminous flux.
     LampLumen = 0.000001 ..= 1000000000.0, "lm";
+    /// An electric power.
+    LampWatts = 0.000001 ..= 1000000.0, "W";
+    /// A luminous efficacy; 683 lm/W is that of green light of 555 nm (CIE 018:2019).
+    LampEfficacy = 0.001 ..= 683.0, "lm/W";
     /// A luminance.
     LampNits = 0.000001 ..= 1000000000.0, "cd/m²";
     /// A correlated colour temperature.

@@ -10,7 +10,9 @@ use super::{
         raw::{
             RawManifest,
             lamp::{RawLamp, RawLampKind, Stand},
-            values::{LampCandela, LampLumen, LampLux, LampNits, PositionMm},
+            values::{
+                LampCandela, LampEfficacy, LampLumen, LampLux, LampNits, LampWatts, PositionMm,
+            },
         },
     },
     Validator,
@@ -29,6 +31,13 @@ const DEFAULT_DISTANCE_MM: f64 = 600.0;
 
 /// How near to the plane of the sheet a lamp can be.
 const LOWEST_MM: f64 = 1.0;
+
+/// The luminous flux that a lamp is given, in lm or as watts times efficacy.
+macro_rules! flux {
+    ($lamp:expr) => {
+        flux($lamp.lumen, $lamp.watts, $lamp.efficacy_lm_per_w)
+    };
+}
 
 impl Validator<'_, '_> {
     /// The lamps of the manifest, or the reference lamp: distant, 1000 lx, from the top left at
@@ -88,7 +97,7 @@ impl Validator<'_, '_> {
             RawLampKind::Point(lamp) => {
                 let position_mm = self.stand(&lamp.stand(), trail)?;
                 let intensity = intensity(
-                    (lamp.lux_at_sheet, lamp.candela, lamp.lumen),
+                    (lamp.lux_at_sheet, lamp.candela, flux!(lamp)),
                     position_mm,
                     lamp_units::point_intensity,
                 )?;
@@ -124,7 +133,7 @@ impl Validator<'_, '_> {
                     (
                         lamp.lux_at_sheet.map(|lux| LampLux(lux.0 / share)),
                         lamp.candela,
-                        lamp.lumen,
+                        flux!(lamp),
                     ),
                     position_mm,
                     |lumen| lamp_units::spot_intensity(lumen, cos_hotspot, cos_falloff),
@@ -142,7 +151,7 @@ impl Validator<'_, '_> {
                 let position_mm = self.stand(&lamp.stand(), trail)?;
                 let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
                 let form = lamp_units::rectangle_form(position_mm, aim_mm, size_mm, DVec3::ZERO);
-                let light = (lamp.lux_at_sheet, lamp.nits, lamp.lumen);
+                let light = (lamp.lux_at_sheet, lamp.nits, flux!(lamp));
                 let luminance = self.luminance(light, form, size_mm.x * size_mm.y, trail)?;
                 Some(LampKind::Rectangle {
                     luminance,
@@ -157,7 +166,7 @@ impl Validator<'_, '_> {
                 let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
                 let form = lamp_units::disc_form(position_mm, aim_mm, diameter_mm, DVec3::ZERO);
                 let area = std::f64::consts::PI * diameter_mm * diameter_mm / 4.0;
-                let light = (lamp.lux_at_sheet, lamp.nits, lamp.lumen);
+                let light = (lamp.lux_at_sheet, lamp.nits, flux!(lamp));
                 let luminance = self.luminance(light, form, area, trail)?;
                 Some(LampKind::Disc {
                     luminance,
@@ -250,6 +259,15 @@ impl Validator<'_, '_> {
         );
         self.report.fault(&trail.key("lux_at_sheet"), words);
     }
+}
+
+/// Φ = P·η where a lamp has watts, otherwise the flux that is given.
+fn flux(
+    lumen: Option<LampLumen>,
+    watts: Option<LampWatts>,
+    efficacy: Option<LampEfficacy>,
+) -> Option<LampLumen> {
+    lumen.or_else(|| Some(LampLumen(watts?.0 * efficacy?.0)))
 }
 
 /// The intensity of a small lamp in cd from the one unit that is given.
