@@ -252,8 +252,16 @@ pub struct Hotspot {
 pub struct Lamp {
     pub id: String,
     pub title: Wording,
-    pub kelvin: Kelvin,
+    pub colour: LampColour,
     pub kind: LampKind,
+}
+
+/// The colour of a lamp's light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LampColour {
+    Temperature(Kelvin),
+    /// x, y for the 2° observer, from the lamp's spectrum.
+    Chromaticity([f64; 2]),
 }
 
 /// Places are in the table frame; every lamp that has a direction looks at the sheet's centre

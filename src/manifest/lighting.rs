@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use super::exhibit::{Exhibit, LampKind, Scene};
+use super::exhibit::{Exhibit, LampColour, LampKind, Scene};
 use crate::{
     colour,
     optics::{
@@ -54,7 +54,7 @@ impl Exhibit {
                 let (shape, amount) = shape(&lamp.kind)?;
                 Some(Light {
                     shape,
-                    amount: tint(lamp.kelvin, white) * amount,
+                    amount: tint(lamp.colour, white) * amount,
                 })
             })
             .collect();
@@ -65,7 +65,7 @@ impl Exhibit {
                 let lamp = &self.lamps[lamp];
                 match lamp.kind {
                     LampKind::LightTable { luminance } => {
-                        Some(tint(lamp.kelvin, white) * luminance.0)
+                        Some(tint(lamp.colour, white) * luminance.0)
                     }
                     _ => None,
                 }
@@ -90,7 +90,8 @@ impl Exhibit {
             light.amount *= exposure;
         }
         light_table *= exposure;
-        let ambient = tint(scene.ambient.kelvin, white) * (ambient_lux * exposure);
+        let ambient =
+            tint(LampColour::Temperature(scene.ambient.kelvin), white) * (ambient_lux * exposure);
         Lighting {
             lights,
             ambient,
@@ -107,8 +108,11 @@ pub fn light_table_lux(nits: f64) -> f64 {
 }
 
 /// Linear sRGB of unit luminance for a lamp seen by an eye adapted to `white`.
-fn tint(lamp: Kelvin, white: Kelvin) -> DVec3 {
-    DVec3::from_array(colour::lamp_rgb(lamp.0, white.0))
+fn tint(lamp: LampColour, white: Kelvin) -> DVec3 {
+    DVec3::from_array(match lamp {
+        LampColour::Temperature(kelvin) => colour::lamp_rgb(kelvin.0, white.0),
+        LampColour::Chromaticity(xy) => colour::lamp_xy_rgb(xy, white.0),
+    })
 }
 
 /// Unit vector in the table frame: azimuth 0° is right and 90° the top edge.

@@ -125,7 +125,7 @@ impl LampPlace {
 mod tests {
     use super::*;
     use crate::{
-        manifest::exhibit::Wording,
+        manifest::exhibit::{LampColour, Wording},
         units::{Candela, Kelvin},
     };
 
@@ -161,7 +161,7 @@ mod tests {
         let mut lamp = Lamp {
             id: "near".into(),
             title: Wording::default(),
-            kelvin: Kelvin(3000.0),
+            colour: LampColour::Temperature(Kelvin(3000.0)),
             kind: LampKind::Point {
                 intensity: Candela(10.0),
                 position_mm: DVec3::new(-300.0, 0.0, 400.0),

@@ -2,15 +2,17 @@
 
 use super::{
     super::{
-        decode::{OfKind, Rule},
+        decode::{Brief, List, OfKind, Rule},
         macros::{kinds, record},
     },
     RawWording,
     values::{
         ConeDeg, DistanceMm, ElevationDeg, FilePath, Id, LampCandela, LampEfficacy, LampLumen,
-        LampLux, LampMm, LampNits, LampWatts, PositionMm, Temperature, TurnDeg,
+        LampLux, LampMm, LampNits, LampWatts, PositionMm, SpectralPower, Temperature, TurnDeg,
+        WavelengthNm,
     },
 };
+use crate::optics::spectrum::{Illuminant, MAX_POINTS};
 
 /// A light source.
 pub type RawLamp = OfKind<RawLampCommon, RawLampKind>;
@@ -27,8 +29,31 @@ record! {
             title: RawWording,
             /// Its colour temperature in K. Without it: 6504, which is daylight.
             kelvin: Temperature,
+            /// Instead of kelvin: its spectral power, as the name of an illuminant of the CIE or
+            /// as a table. Its colour is computed from it.
+            spectrum: Brief<Illuminant, RawSpectrum>,
         }
-        rules []
+        rules [Rule::AtMostOne(&["kelvin", "spectrum"])]
+    }
+}
+
+record! {
+    /// The spectral power of a lamp, linear between the points that are given and none outside.
+    pub struct RawSpectrum {
+        required {}
+        optional {
+            /// Rising wavelengths in nm.
+            wavelengths_nm: List<WavelengthNm, 2, MAX_POINTS>,
+            /// With wavelengths_nm: the power at each, in any unit per nm.
+            power: List<SpectralPower, 2, MAX_POINTS>,
+            /// A text file of two columns, wavelength in nm and power, instead.
+            file: FilePath,
+        }
+        rules [
+            Rule::ExactlyOne(&["wavelengths_nm", "file"]),
+            Rule::Needs("wavelengths_nm", "power"),
+            Rule::Needs("power", "wavelengths_nm"),
+        ]
     }
 }
 

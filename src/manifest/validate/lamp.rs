@@ -4,12 +4,12 @@ use glam::{DVec2, DVec3};
 
 use super::{
     super::{
-        decode::{List, Pattern},
+        decode::{Brief, List, Pattern},
         document::{Trail, Words},
-        exhibit::{Lamp, LampKind, Wording},
+        exhibit::{Lamp, LampColour, LampKind, Wording},
         raw::{
             RawManifest,
-            lamp::{RawLamp, RawLampKind, Stand},
+            lamp::{RawLamp, RawLampCommon, RawLampKind, RawSpectrum, Stand},
             values::{
                 LampCandela, LampEfficacy, LampLumen, LampLux, LampNits, LampWatts, PositionMm,
             },
@@ -18,7 +18,7 @@ use super::{
     Validator,
 };
 use crate::{
-    optics::{lamp::DISTANCE2_MIN_MM2, lamp_units},
+    optics::{lamp::DISTANCE2_MIN_MM2, lamp_units, spectrum},
     units::{Candela, Degrees, Kelvin, Lux, Nits},
 };
 
@@ -47,7 +47,7 @@ impl Validator<'_, '_> {
             return Some(vec![Lamp {
                 id: DEFAULT_ID.to_owned(),
                 title: Wording::default(),
-                kelvin: Kelvin(DAYLIGHT_K),
+                colour: LampColour::Temperature(Kelvin(DAYLIGHT_K)),
                 kind: LampKind::Distant {
                     illuminance: Lux(1000.0),
                     elevation: Degrees(45.0),
@@ -65,7 +65,7 @@ impl Validator<'_, '_> {
     pub(super) fn lamp(&mut self, raw: &RawLamp, trail: &Trail) -> Option<Lamp> {
         let id = raw.common.id.as_str().to_owned();
         let title = self.wording(raw.common.title.as_ref(), &trail.key("title"));
-        let kelvin = Kelvin(raw.common.kelvin.map_or(DAYLIGHT_K, |kelvin| kelvin.0));
+        let colour = self.lamp_colour(&raw.common, trail);
         let kind = self.lamp_kind(raw, trail)?;
         let unseen = match kind {
             LampKind::Ies { .. } => Some("lamps by a photometric file are"),
@@ -82,9 +82,40 @@ impl Validator<'_, '_> {
         Some(Lamp {
             id,
             title,
-            kelvin,
+            colour: colour?,
             kind,
         })
+    }
+
+    fn lamp_colour(&mut self, raw: &RawLampCommon, trail: &Trail) -> Option<LampColour> {
+        let trail = trail.key("spectrum");
+        let xy = match &raw.spectrum {
+            None => {
+                let kelvin = raw.kelvin.map_or(DAYLIGHT_K, |kelvin| kelvin.0);
+                return Some(LampColour::Temperature(Kelvin(kelvin)));
+            }
+            Some(Brief::Short(illuminant)) => illuminant.xy(),
+            Some(Brief::Full(RawSpectrum {
+                file: Some(file), ..
+            })) => self.spectrum_file(file, &trail.key("file"))?,
+            Some(Brief::Full(raw)) => {
+                let wavelengths: Vec<f64> = raw
+                    .wavelengths_nm
+                    .as_ref()?
+                    .iter()
+                    .map(|(_, nm)| nm.0)
+                    .collect();
+                let power: Vec<f64> = raw.power.as_ref()?.iter().map(|(_, p)| p.0).collect();
+                match spectrum::chromaticity(&wavelengths, &power) {
+                    Ok(xy) => xy,
+                    Err(error) => {
+                        self.report.fault(&trail, spectrum_words(error.to_string()));
+                        return None;
+                    }
+                }
+            }
+        };
+        Some(LampColour::Chromaticity(xy))
     }
 
     fn lamp_kind(&mut self, raw: &RawLamp, trail: &Trail) -> Option<LampKind> {
@@ -259,6 +290,16 @@ impl Validator<'_, '_> {
         );
         self.report.fault(&trail.key("lux_at_sheet"), words);
     }
+}
+
+/// What is wrong with a table of spectral power.
+pub(super) fn spectrum_words(found: String) -> Words {
+    let allowed = "rising wavelengths in nm, each with a power from zero up, some of it visible";
+    Words::new(
+        found,
+        allowed,
+        "correct the table, or name an illuminant such as \"LED-B3\"",
+    )
 }
 
 /// Φ = P·η where a lamp has watts, otherwise the flux that is given.
