@@ -6,8 +6,8 @@
     ALPHA_MIN, INV_PI, MU_MIN,
     Facing, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Surface,
     albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing, fit_powers, interface_at,
-    interface_mean_at, interface_row, light_disc, light_distant, light_punctual,
-    light_rectangle,
+    interface_mean_at, interface_row, ies_angles, light_disc, light_distant,
+    light_ies, light_punctual, light_rectangle,
 }
 
 // Largest value a half-float target holds.
@@ -66,6 +66,9 @@ struct Paper {
 @group(#{MATERIAL_BIND_GROUP}) @binding(3) var normal_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(4) var roughness_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(5) var outline_map: texture_2d<f32>;
+#ifdef IES
+@group(#{MATERIAL_BIND_GROUP}) @binding(11) var profiles: texture_2d<f32>;
+#endif
 #ifdef OVERLAYS
 @group(#{MATERIAL_BIND_GROUP}) @binding(16) var overlay_map_a: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(17) var overlay_map_b: texture_2d<f32>;
@@ -174,6 +177,37 @@ fn dithered(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
     return max(colour + noise * step, vec3(0.0));
 }
 #endif
+
+#ifdef IES
+// Share of an IES lamp's peak at the angles γ and C: linear between columns, and between rows
+// around the axis.
+fn profile_at(light: Light, angles: vec2<f32>) -> f32 {
+    let last = textureDimensions(profiles).x - 1u;
+    let column = clamp(angles.x * INV_PI, 0.0, 1.0) * f32(last);
+    let i = min(u32(column), last - 1u);
+    let row = clamp(angles.y * (0.5 * INV_PI), 0.0, 1.0) * f32(light.profile_rows);
+    let j = light.profile_row + u32(row) % light.profile_rows;
+    let k = light.profile_row + (u32(row) + 1u) % light.profile_rows;
+    let t = column - f32(i);
+    let near = mix(
+        textureLoad(profiles, vec2(i, j), 0).x, textureLoad(profiles, vec2(i + 1u, j), 0).x, t,
+    );
+    let far = mix(
+        textureLoad(profiles, vec2(i, k), 0).x, textureLoad(profiles, vec2(i + 1u, k), 0).x, t,
+    );
+    return mix(near, far, fract(row));
+}
+#endif
+
+// A lamp without area.
+fn light_small(light: Light, p: vec3<f32>) -> Incidence {
+#ifdef IES
+    if light.profile_rows > 0u {
+        return light_ies(light, p, profile_at(light, ies_angles(light, p)));
+    }
+#endif
+    return light_punctual(light, p);
+}
 
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
@@ -297,7 +331,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
                 spoke = select(spoke, -spoke, quarter >= 2u);
                 incidence = light_disc(light, in.local, ring, spoke);
             } else if light.grid == 0u {
-                incidence = light_punctual(light, in.local);
+                incidence = light_small(light, in.local);
             } else {
                 // The rule of n points begins behind those of 1 … n − 1.
                 let rule = light.grid * (light.grid - 1u) / 2u;
@@ -310,7 +344,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef DISTANT_LAMPS
             let incidence = light_distant(light);
 #else
-            let incidence = light_punctual(light, in.local);
+            let incidence = light_small(light, in.local);
 #endif
 #endif
             let mu_i = dot(n, incidence.l);

@@ -290,6 +290,8 @@ impl Sentinel {
             half_edge_v: self.vec3(),
             distance_squared_min: self.f32(),
             rings: self.u32(),
+            profile_row: self.u32(),
+            profile_rows: self.u32(),
         })
     }
 

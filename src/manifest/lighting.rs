@@ -1,6 +1,6 @@
 //! A scene's lamps as light: colour, exposure and shape, ready for any renderer.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
@@ -10,6 +10,7 @@ use crate::{
     optics::{
         lamp::{Light, Shape},
         lamp_units::area_axes,
+        photometry::Photometry,
     },
     units::{Degrees, Kelvin},
 };
@@ -39,6 +40,19 @@ pub struct Lighting {
     pub light_table: DVec3,
     /// The reference illuminance, declared or found, in lx.
     pub reference_lux: f64,
+}
+
+impl Lighting {
+    /// The photometric files of the IES lamps, in the order of `lights`.
+    pub fn photometry(&self) -> Vec<Arc<Photometry>> {
+        self.lights
+            .iter()
+            .filter_map(|light| match &light.shape {
+                Shape::Ies { photometry, .. } => Some(Arc::clone(photometry)),
+                _ => None,
+            })
+            .collect()
+    }
 }
 
 impl Exhibit {
@@ -122,8 +136,7 @@ pub fn direction(elevation: Degrees, azimuth: Degrees) -> DVec3 {
     DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e)
 }
 
-/// Shape and unexposed amount; `None` for a light table, which lights neither side, and for lamps
-/// that this version does not show.
+/// Shape and unexposed amount; `None` for a light table, which lights neither side.
 fn shape(kind: &LampKind) -> Option<(Shape, f64)> {
     Some(match *kind {
         LampKind::Distant {
@@ -180,7 +193,23 @@ fn shape(kind: &LampKind) -> Option<(Shape, f64)> {
             let amount = luminance.0 * PI * radius * radius;
             (disc(position_mm, aim_mm, radius), amount)
         }
-        LampKind::Ies { .. } | LampKind::LightTable { .. } => return None,
+        LampKind::Ies {
+            ref photometry,
+            position_mm,
+            aim_mm,
+        } => {
+            let [across_u, across_v, axis] =
+                area_axes(position_mm, aim_mm).unwrap_or([DVec3::X, DVec3::Y, -DVec3::Z]);
+            let shape = Shape::Ies {
+                position: position_mm,
+                axis,
+                across_u,
+                across_v,
+                photometry: Arc::clone(photometry),
+            };
+            (shape, photometry.peak() * MM2_PER_M2)
+        }
+        LampKind::LightTable { .. } => return None,
     })
 }
 

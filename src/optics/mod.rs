@@ -18,6 +18,7 @@ pub mod lamp;
 pub mod lamp_units;
 pub mod medium;
 pub mod microfacet;
+pub mod photometry;
 pub mod quadrature;
 pub mod spectrum;
 pub mod table;

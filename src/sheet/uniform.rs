@@ -31,11 +31,14 @@ pub struct LightUniform {
     pub half_edge_v: Vec3,
     pub distance_squared_min: f32,
     pub rings: u32,
+    pub profile_row: u32,
+    pub profile_rows: u32,
 }
 
 impl LightUniform {
     /// Narrows `light`. With `as_points`, a rectangle or disc becomes a point in its middle
-    /// that shines like a Lambertian facet (the draft tier).
+    /// that shines like a Lambertian facet (the draft tier). An IES lamp's profile is found by
+    /// [`PaperUniform::set_lights`].
     pub fn new(light: &Light, as_points: bool) -> Self {
         let amount = light.amount.as_vec3();
         let near = Self {
@@ -48,6 +51,20 @@ impl LightUniform {
             ..Self::default()
         };
         match light.shape {
+            Shape::Ies {
+                position,
+                axis,
+                across_u,
+                across_v,
+                ref photometry,
+            } => Self {
+                place: position.as_vec3(),
+                axis: axis.as_vec3(),
+                half_edge_u: across_u.as_vec3(),
+                half_edge_v: across_v.as_vec3(),
+                profile_rows: photometry.rows() as u32,
+                ..near
+            },
             Shape::Distant { towards } => Self {
                 place: towards.as_vec3(),
                 near: 0.0,
@@ -215,6 +232,12 @@ impl PaperUniform {
         self.lamp_count = lights.len().min(MAX_LAMPS) as u32;
         for (slot, light) in self.lights.iter_mut().zip(lights) {
             *slot = LightUniform::new(&light.rotated(local_from_table), as_points);
+        }
+        // One profile under the other, as `profile_image` stacks them.
+        let mut row = 0;
+        for slot in &mut self.lights[..self.lamp_count as usize] {
+            slot.profile_row = row;
+            row += slot.profile_rows;
         }
         self.ambient = ambient.as_vec3();
         let points = GRIDS.flat_map(|points| (0..points).map(move |i| (points, i)));

@@ -196,7 +196,6 @@ fn what_is_not_shown_yet_is_named() {
     assert_eq!(
         read(FULL).not_shown_yet,
         [
-            "Lamp \"studio\": lamps by a photometric file are not shown yet.",
             "Drawing \"landscape\": transmission is not shown yet.",
             "Drawing \"landscape\": media maps do not change the picture yet.",
             "Drawing \"landscape\": thickness_um of the paper does not change the picture yet.",
@@ -487,6 +486,17 @@ fn a_spectrum_file_is_named_with_its_line() {
         let faults = Exhibit::read(&folder.exhibit).unwrap_err().to_string();
         assert!(faults.contains(found), "{faults}");
     }
+}
+
+#[test]
+fn a_photometric_file_is_the_lamps_intensity() {
+    let text = format!(
+        "{SMALL}[[lamp]]\nid = \"lamp\"\nkind = \"ies\"\nfile = \"lamp.ies\"\n\
+         position_mm = [0, 0, 2000]\n"
+    );
+    let exhibit = read(&text);
+    // 500 cd straight ahead, at two metres.
+    close(exhibit.lighting(&exhibit.scenes[0]).reference_lux, 125.0);
 }
 
 #[test]

@@ -15,7 +15,7 @@ use super::super::{
 use super::{Validator, lamp::spectrum_words};
 use crate::{
     maps::{self, Header, MAX_SIDE, MapError},
-    optics::spectrum,
+    optics::{photometry::Photometry, spectrum},
 };
 
 impl Validator<'_, '_> {
@@ -115,13 +115,15 @@ impl Validator<'_, '_> {
     }
 
     /// A photometric file of the exhibit, named at `trail`.
-    pub(super) fn photometry(&mut self, file: &FilePath, trail: &Trail) -> Option<PathBuf> {
+    pub(super) fn photometry(&mut self, file: &FilePath, trail: &Trail) -> Option<Photometry> {
         let path = self.file(file, trail)?;
-        match check_ies(&path) {
-            Ok(()) => Some(path),
+        let lamp = small_text(&path)
+            .and_then(|text| Photometry::parse(&text).map_err(|error| error.to_string()));
+        match lamp {
+            Ok(lamp) => Some(lamp),
             Err(reason) => {
                 let found = format!("{} ({reason})", quote(file.as_str()));
-                let allowed = "a photometric file, IES LM-63";
+                let allowed = "a photometric file, IES LM-63, of type C and with TILT=NONE";
                 self.report
                     .fault(trail, Words::new(found, allowed, "export it again"));
                 None
@@ -142,17 +144,6 @@ fn small_text(path: &Path) -> Result<String, String> {
         return Err("more than 4 MiB".to_owned());
     }
     Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-/// Every edition of LM-63 since 1991 begins with its name.
-fn check_ies(path: &Path) -> Result<(), String> {
-    let mut start = [0; 5];
-    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
-    match read {
-        Ok(()) if start == *b"IESNA" || start == *b"IES:L" => Ok(()),
-        Ok(()) => Err("it does not begin with IESNA".to_owned()),
-        Err(error) => Err(error.to_string()),
-    }
 }
 
 /// Whether a relative path climbs above where it starts, even if it comes back.

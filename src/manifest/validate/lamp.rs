@@ -1,5 +1,7 @@
 //! Lamps: places from angles, and every photometric unit into the one that is calculated with.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -67,18 +69,6 @@ impl Validator<'_, '_> {
         let title = self.wording(raw.common.title.as_ref(), &trail.key("title"));
         let colour = self.lamp_colour(&raw.common, trail);
         let kind = self.lamp_kind(raw, trail)?;
-        let unseen = match kind {
-            LampKind::Ies { .. } => Some("lamps by a photometric file are"),
-            LampKind::Distant { .. }
-            | LampKind::Point { .. }
-            | LampKind::Spot { .. }
-            | LampKind::Rectangle { .. }
-            | LampKind::Disc { .. }
-            | LampKind::LightTable { .. } => None,
-        };
-        if let Some(unseen) = unseen {
-            self.not_shown_yet(format!("Lamp \"{id}\": {unseen} not shown yet."));
-        }
         Some(Lamp {
             id,
             title,
@@ -207,11 +197,11 @@ impl Validator<'_, '_> {
                 })
             }
             RawLampKind::Ies(lamp) => {
-                let path = self.photometry(&lamp.file, &trail.key("file"));
+                let photometry = self.photometry(&lamp.file, &trail.key("file"));
                 let position_mm = self.stand(&lamp.stand(), trail)?;
                 let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
                 Some(LampKind::Ies {
-                    path: path?,
+                    photometry: Arc::new(photometry?),
                     position_mm,
                     aim_mm,
                 })
