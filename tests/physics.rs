@@ -664,7 +664,7 @@ fn lumen_candela_and_nits_are_one_light() {
     assert!(matches!(spot.lamps[0].kind, LampKind::Spot { .. }));
     let lighting = spot.lighting(&spot.scenes[0]);
     let exposure = PI / lighting.reference_lux;
-    let beam = lighting.lights[0];
+    let beam = &lighting.lights[0];
     let lumen: f64 = (0..STEPS)
         .map(|i| {
             let cos = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(STEPS);

@@ -90,7 +90,8 @@ impl Light {
             } => {
                 let share = |l: DVec3| {
                     let (u, v) = (-across_u.dot(l), -across_v.dot(l));
-                    let gamma = u.hypot(v).atan2(-axis.dot(l));
+                    // Without a direction, at the lamp's own place, γ is 0: never −0.
+                    let gamma = u.hypot(v).atan2(0.0 - axis.dot(l));
                     photometry.intensity(gamma, v.atan2(u)) / photometry.peak()
                 };
                 vec![self.inverse_square(position - p, share)]

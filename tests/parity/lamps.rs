@@ -40,7 +40,7 @@ impl LampCase {
         let l = p - light.place.as_dvec3();
         let along = |axis: Vec3| axis.as_dvec3().dot(l);
         let (u, v) = (along(light.half_edge_u), along(light.half_edge_v));
-        [u.hypot(v).atan2(along(light.axis)), v.atan2(u)]
+        [u.hypot(v).atan2(along(light.axis) + 0.0), v.atan2(u)]
     }
 }
 
