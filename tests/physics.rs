@@ -1,6 +1,6 @@
 //! The f64 physics against closed forms, direct integration and another renderer.
 
-use std::{f64::consts::PI, fs, path::Path};
+use std::{f64::consts::PI, fs, path::Path, sync::Arc};
 
 use glam::{DVec2, DVec3};
 use recto::{
@@ -15,6 +15,7 @@ use recto::{
         lamp::{Light, Shape, polygon_form},
         lamp_units::{rectangle_form, spot_share},
         microfacet::{d_ggx, directional_albedo, v_smith},
+        photometry::Photometry,
         quadrature::GRIDS,
         table::{ALPHA_FIT_MIN, InterfaceTable},
         tier::{Facing, Surface, brdf_draft, brdf_gallery, brdf_lambert, facing},
@@ -535,6 +536,8 @@ fn the_strangest_lamps_stay_finite() {
         DVec3::Z * 1e-9,
         DVec3::new(1e5, 1e5, 1e-3),
     ];
+    let file = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 180\n0\n1 1\n";
+    let photometry = Arc::new(Photometry::parse(file).expect("a lamp"));
     for lumen in [1e-3, 1.0, 1e7] {
         for position in places {
             let axis = -DVec3::Z;
@@ -557,6 +560,13 @@ fn the_strangest_lamps_stay_finite() {
                 rectangle(1e5),
                 disc(position, axis, 0.0).shape,
                 disc(position, axis, 1e5).shape,
+                Shape::Ies {
+                    position,
+                    axis,
+                    across_u: DVec3::X,
+                    across_v: -DVec3::Y,
+                    photometry: Arc::clone(&photometry),
+                },
             ] {
                 let lamp = Light {
                     shape,
