@@ -475,6 +475,11 @@ struct Light {
     cos_falloff: f32,
     half_edge_v: vec3<f32>,
     distance_squared_min: f32,
+    // Rings of samples of a disc; 0 for any other lamp.
+    rings: u32,
+    // First row and count of rows of an IES lamp's profile; no rows for any other lamp.
+    profile_row: u32,
+    profile_rows: u32,
 }
 
 struct Incidence {
@@ -502,4 +507,54 @@ fn light_rectangle(light: Light, p: vec3<f32>, u: vec2<f32>, v: vec2<f32>) -> In
     let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
     let emits = max(-dot(light.axis, l), 0.0) * u.y * v.y;
     return Incidence(l, light.amount * (emits / max(distance_squared, light.distance_squared_min)));
+}
+
+// A disc's radii are its half edges. `ring` is a node on [−1, 1] and its weight, `spoke` the unit
+// vector of one of the 4 azimuths per ring and ring.
+fn light_disc(light: Light, p: vec3<f32>, ring: vec2<f32>, spoke: vec2<f32>) -> Incidence {
+    let r = sqrt(0.5 + 0.5 * ring.x);
+    let place = light.place + (light.half_edge_u * spoke.x + light.half_edge_v * spoke.y) * r;
+    let towards = place - p;
+    let distance_squared = dot(towards, towards);
+    let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
+    let share = ring.y / (4.0 * f32(light.rings));
+    let emits = max(-dot(light.axis, l), 0.0) * share;
+    return Incidence(l, light.amount * (emits / max(distance_squared, light.distance_squared_min)));
+}
+
+// Angle of (x, y) from the x axis, −π to π, within 2e-6: Abramowitz & Stegun 4.4.49 (2e-8 in
+// exact arithmetic), as atan2 may be off by 4096 ULP.
+fn angle_of(x: f32, y: f32) -> f32 {
+    let a = abs(x);
+    let b = abs(y);
+    let t = min(a, b) / max(max(a, b), 1e-30);
+    let s = t * t;
+    var angle = t * (1.0 + s * (-0.3333314528 + s * (0.1999355085 + s * (-0.1420889944
+        + s * (0.1065626393 + s * (-0.0752896400 + s * (0.0429096138
+        + s * (-0.0161657367 + s * 0.0028662257))))))));
+    angle = select(angle, 0.5 * PI - angle, b > a);
+    angle = select(angle, PI - angle, x < 0.0);
+    return select(angle, -angle, y < 0.0);
+}
+
+// γ in 0…π and C in 0…2π in which an IES lamp is seen from `p`. The half edges are its C = 0° and
+// 90°.
+fn ies_angles(light: Light, p: vec3<f32>) -> vec2<f32> {
+    let d = p - light.place;
+    let l = d / max(sqrt(dot(d, d)), LENGTH_MIN);
+    let u = dot(light.half_edge_u, l);
+    let v = dot(light.half_edge_v, l);
+    let c = angle_of(u, v);
+    return vec2(
+        angle_of(dot(light.axis, l), sqrt(u * u + v * v)),
+        select(c, c + 2.0 * PI, c < 0.0),
+    );
+}
+
+// `share` of the peak, looked up at ies_angles.
+fn light_ies(light: Light, p: vec3<f32>, share: f32) -> Incidence {
+    let towards = light.place - p;
+    let distance_squared = dot(towards, towards);
+    let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
+    return Incidence(l, light.amount * (share / max(distance_squared, light.distance_squared_min)));
 }

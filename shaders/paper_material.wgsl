@@ -8,7 +8,8 @@
     Shares, Split, Surface, Through,
     albedo_of, brdf_draft, brdf_gallery, brdf_lambert, capture_floor, brdf_study, btdf_study,
     diffuse_share, facing, fit_powers, inner_cosine, interface_at, interface_mean_at,
-    interface_row, internal_reflectance, light_distant, light_punctual, light_rectangle,
+    ies_angles, interface_row, internal_reflectance, light_disc, light_distant, light_ies,
+    light_punctual, light_rectangle,
     optical_depth, particle_shares, through_study,
 }
 
@@ -85,8 +86,9 @@ struct Paper {
     interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,
-    // Nodes and weights (xy) of the rules of 2 to 7 points.
-    quadrature: array<vec4<f32>, 27>,
+    // Of the rules of 1 to 7 points: nodes and weights (xy), and the azimuths of the first quarter
+    // of a disc of as many rings (zw).
+    quadrature: array<vec4<f32>, 28>,
     // What the side is made of: the study tier, and light through the sheet.
     film: Film,
     split: Split,
@@ -109,6 +111,9 @@ struct Paper {
 @group(#{MATERIAL_BIND_GROUP}) @binding(5) var outline_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(9) var transmission_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(10) var other_map: texture_2d<f32>;
+#ifdef IES
+@group(#{MATERIAL_BIND_GROUP}) @binding(11) var profiles: texture_2d<f32>;
+#endif
 #ifdef OVERLAYS
 @group(#{MATERIAL_BIND_GROUP}) @binding(16) var overlay_map_a: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(17) var overlay_map_b: texture_2d<f32>;
@@ -217,6 +222,37 @@ fn dithered(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
     return max(colour + noise * step, vec3(0.0));
 }
 #endif
+
+#ifdef IES
+// Share of an IES lamp's peak at the angles γ and C: linear between columns, and between rows
+// around the axis.
+fn profile_at(light: Light, angles: vec2<f32>) -> f32 {
+    let last = textureDimensions(profiles).x - 1u;
+    let column = clamp(angles.x * INV_PI, 0.0, 1.0) * f32(last);
+    let i = min(u32(column), last - 1u);
+    let row = clamp(angles.y * (0.5 * INV_PI), 0.0, 1.0) * f32(light.profile_rows);
+    let j = light.profile_row + u32(row) % light.profile_rows;
+    let k = light.profile_row + (u32(row) + 1u) % light.profile_rows;
+    let t = column - f32(i);
+    let near = mix(
+        textureLoad(profiles, vec2(i, j), 0).x, textureLoad(profiles, vec2(i + 1u, j), 0).x, t,
+    );
+    let far = mix(
+        textureLoad(profiles, vec2(i, k), 0).x, textureLoad(profiles, vec2(i + 1u, k), 0).x, t,
+    );
+    return mix(near, far, fract(row));
+}
+#endif
+
+// A lamp without area.
+fn light_small(light: Light, p: vec3<f32>) -> Incidence {
+#ifdef IES
+    if light.profile_rows > 0u {
+        return light_ies(light, p, profile_at(light, ies_angles(light, p)));
+    }
+#endif
+    return light_punctual(light, p);
+}
 
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
@@ -381,14 +417,23 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         let light = paper.lights[k];
 #endif
 #ifdef AREA_LAMPS
-        let samples = max(light.grid * light.grid, 1u);
+        let spokes = 4u * light.rings;
+        let samples = max(light.grid * light.grid + light.rings * spokes, 1u);
         for (var i = 0u; i < samples; i++) {
             var incidence: Incidence;
-            if light.grid == 0u {
-                incidence = light_punctual(light, in.local);
+            if light.rings > 0u {
+                let rule = light.rings * (light.rings - 1u) / 2u;
+                let ring = paper.quadrature[rule + i / spokes].xy;
+                let quarter = i % spokes / light.rings;
+                var spoke = paper.quadrature[rule + i % light.rings].zw;
+                spoke = select(spoke, vec2(-spoke.y, spoke.x), (quarter & 1u) == 1u);
+                spoke = select(spoke, -spoke, quarter >= 2u);
+                incidence = light_disc(light, in.local, ring, spoke);
+            } else if light.grid == 0u {
+                incidence = light_small(light, in.local);
             } else {
-                // The rule of n points begins behind those of 2 … n − 1.
-                let rule = light.grid * (light.grid - 1u) / 2u - 1u;
+                // The rule of n points begins behind those of 1 … n − 1.
+                let rule = light.grid * (light.grid - 1u) / 2u;
                 let u = paper.quadrature[rule + i % light.grid].xy;
                 let v = paper.quadrature[rule + i / light.grid].xy;
                 incidence = light_rectangle(light, in.local, u, v);
@@ -398,7 +443,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef DISTANT_LAMPS
             let incidence = light_distant(light);
 #else
-            let incidence = light_punctual(light, in.local);
+            let incidence = light_small(light, in.local);
 #endif
 #endif
             let mu_i = dot(n, incidence.l);

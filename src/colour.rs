@@ -230,7 +230,12 @@ fn daylight_xy(t: f64) -> [f64; 2] {
 /// whose eye has adapted to `white_kelvin` (Bradford): exactly `[1, 1, 1]` where both agree, and
 /// always of luminance 1. A deep red lamp can lie outside the gamut and have a negative blue.
 pub fn lamp_rgb(kelvin: f64, white_kelvin: f64) -> [f64; 3] {
-    let [lamp, white] = [kelvin, white_kelvin].map(kelvin_to_xy);
+    lamp_xy_rgb(kelvin_to_xy(kelvin), white_kelvin)
+}
+
+/// As [`lamp_rgb`], for a lamp of chromaticity `lamp` (y > 0).
+pub fn lamp_xy_rgb(lamp: [f64; 2], white_kelvin: f64) -> [f64; 3] {
+    let white = kelvin_to_xy(white_kelvin);
     if lamp == white {
         return [1.0; 3];
     }

@@ -34,6 +34,8 @@ pub struct Terms {
     pub specular: bool,
     pub ambient: bool,
     pub area_lamps: bool,
+    /// A lamp shines as its photometric file says.
+    pub ies: bool,
     /// All lamps are distant: neither place nor distance matters.
     pub distant_lamps: bool,
     /// There is no loop over lamps.
@@ -194,12 +196,15 @@ fn side_needs(
         .lamps
         .iter()
         .map(|&lamp| &exhibit.lamps[lamp].kind)
-        .filter(|kind| kind.is_shown() && !kind.is_behind())
+        .filter(|kind| !kind.is_behind())
         .collect();
     terms.area_lamps = tier != Tier::Draft
         && shown
             .iter()
-            .any(|kind| matches!(kind, LampKind::Rectangle { .. }));
+            .any(|kind| matches!(kind, LampKind::Rectangle { .. } | LampKind::Disc { .. }));
+    terms.ies = shown
+        .iter()
+        .any(|kind| matches!(kind, LampKind::Ies { .. }));
     terms.distant_lamps = shown
         .iter()
         .all(|kind| matches!(kind, LampKind::Distant { .. }));
@@ -266,9 +271,9 @@ fn side_needs(
     if tier == Tier::Draft
         && shown
             .iter()
-            .any(|kind| matches!(kind, LampKind::Rectangle { .. }))
+            .any(|kind| matches!(kind, LampKind::Rectangle { .. } | LampKind::Disc { .. }))
     {
-        say("rectangle lamps as points: the draft tier".into());
+        say("rectangle and disc lamps as points: the draft tier".into());
     }
     SideNeeds {
         side: name,

@@ -1,7 +1,7 @@
 //! The shipped physics on the graphics device against its f64 twins, at the extremes of every
 //! parameter. The twins get the f32 inputs widened, so that only the arithmetic differs.
 
-use std::{cell::Cell, f64::consts::PI};
+use std::{cell::Cell, f64::consts::PI, sync::Arc};
 
 use bevy::render::render_resource::{
     ShaderType,
@@ -13,7 +13,8 @@ use recto::{
         fresnel::{fresnel_dielectric, fresnel_schlick, normal_reflectance},
         lamp::{Incidence, Light, Shape},
         microfacet::{d_ggx, v_smith},
-        quadrature::{GRIDS, gauss_legendre},
+        photometry::Photometry,
+        quadrature::{GRIDS, disc_rule, gauss_legendre},
         table::{
             ALPHA_FIT_MIN, AlphaPolynomial, Interface, InterfaceMean, InterfaceTable, LOST_TERMS,
             MU_TERMS,

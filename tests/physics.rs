@@ -3,14 +3,14 @@
 #[path = "physics/baselines.rs"]
 mod baselines;
 
-use std::{f64::consts::PI, fs, path::Path};
+use std::{f64::consts::PI, fs, path::Path, sync::Arc};
 
 use glam::{DVec2, DVec3};
 use recto::{
     colour,
     manifest::{
         Exhibit, LampKind,
-        lighting::{direction, grid_for},
+        lighting::{direction, grid_for, rings_for},
     },
     maps::encode::save_png_rgb8,
     optics::{
@@ -18,6 +18,7 @@ use recto::{
         lamp::{Light, Shape, polygon_form},
         lamp_units::{rectangle_form, spot_share},
         microfacet::{d_ggx, directional_albedo, v_smith},
+        photometry::Photometry,
         quadrature::GRIDS,
         table::{ALPHA_FIT_MIN, InterfaceTable},
         tier::{Facing, Surface, brdf_draft, brdf_gallery, brdf_lambert, facing},
@@ -455,6 +456,82 @@ fn a_rectangle_below_the_horizon_shines_with_its_upper_part() {
     assert!((sampled / exact - 1.0).abs() < 4e-2, "{sampled} {exact}");
 }
 
+/// A disc of unit luminance, sampled as a scene samples it.
+fn disc(centre: DVec3, axis: DVec3, radius: f64) -> Light {
+    let u = axis.any_orthonormal_vector();
+    Light {
+        shape: Shape::Disc {
+            centre,
+            axis,
+            half_u: u * radius,
+            half_v: axis.cross(u) * radius,
+            rings: rings_for(2.0 * radius / centre.length()),
+        },
+        amount: DVec3::splat(PI * radius * radius),
+    }
+}
+
+/// Illuminance of a disc of unit luminance at the origin with normal z, by a fine midpoint rule.
+fn fine_disc(centre: DVec3, axis: DVec3, radius: f64) -> f64 {
+    const STEPS: u32 = 400;
+    let u = axis.any_orthonormal_vector();
+    let v = axis.cross(u);
+    let mut sum = 0.0;
+    for ring in 0..STEPS {
+        let r = radius * ((f64::from(ring) + 0.5) / f64::from(STEPS)).sqrt();
+        for spoke in 0..STEPS {
+            let (sin, cos) = ((f64::from(spoke) + 0.5) / f64::from(STEPS) * 2.0 * PI).sin_cos();
+            let to = centre + (u * cos + v * sin) * r;
+            let l = to.normalize();
+            sum += l.z.max(0.0) * (-axis.dot(l)).max(0.0) / to.length_squared();
+        }
+    }
+    sum * PI * radius * radius / f64::from(STEPS * STEPS)
+}
+
+#[test]
+fn discs_meet_their_closed_form_on_the_axis_and_a_fine_integral_off_it() {
+    // Radius over distance, and the relative error that is expected of so few samples.
+    for (radius, expected) in [
+        (10.0, 1e-5),
+        (140.0, 5e-4),
+        (450.0, 5e-4),
+        (900.0, 5e-4),
+        (3000.0, 2e-2),
+    ] {
+        let d = 1000.0;
+        // E = π L r²/(r² + d²) (configuration factor B-13 of Howell's catalogue, times π).
+        let exact = PI * radius * radius / (radius * radius + d * d);
+        let sampled = disc(DVec3::Z * d, -DVec3::Z, radius).illuminance(DVec3::ZERO, DVec3::Z);
+        let fine = fine_disc(DVec3::Z * d, -DVec3::Z, radius);
+        assert!(
+            (fine / exact - 1.0).abs() < 1e-4,
+            "{radius}: {fine} {exact}"
+        );
+        let error = (sampled.x / exact - 1.0).abs();
+        eprintln!("disc of radius {radius} at {d}: {error:.1e} off");
+        assert!(error < expected, "{radius}: {sampled}, not {exact}");
+    }
+    let tilted = DVec3::new(-0.6, 0.0, -0.8);
+    for (centre, axis, radius, expected) in [
+        (DVec3::new(600.0, 0.0, 800.0), tilted, 120.0, 5e-4),
+        (DVec3::new(600.0, 0.0, 800.0), tilted, 400.0, 5e-4),
+        (DVec3::new(300.0, -500.0, 400.0), -DVec3::Z, 300.0, 5e-4),
+        (DVec3::new(900.0, 0.0, 150.0), -DVec3::X, 100.0, 5e-4),
+    ] {
+        let sampled = disc(centre, axis, radius)
+            .illuminance(DVec3::ZERO, DVec3::Z)
+            .x;
+        let exact = fine_disc(centre, axis, radius);
+        let error = (sampled / exact - 1.0).abs();
+        eprintln!("disc of radius {radius} at {centre}: {error:.1e} off");
+        assert!(error < expected, "{centre}: {sampled}, not {exact}");
+    }
+    // It shines to one side only.
+    let behind = disc(DVec3::Z * 500.0, DVec3::Z, 100.0);
+    assert_eq!(behind.illuminance(DVec3::ZERO, DVec3::Z), DVec3::ZERO);
+}
+
 #[test]
 fn the_strangest_lamps_stay_finite() {
     let places = [
@@ -464,6 +541,8 @@ fn the_strangest_lamps_stay_finite() {
         DVec3::Z * 1e-9,
         DVec3::new(1e5, 1e5, 1e-3),
     ];
+    let file = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 180\n0\n1 1\n";
+    let photometry = Arc::new(Photometry::parse(file).expect("a lamp"));
     for lumen in [1e-3, 1.0, 1e7] {
         for position in places {
             let axis = -DVec3::Z;
@@ -484,6 +563,15 @@ fn the_strangest_lamps_stay_finite() {
                 },
                 rectangle(0.0),
                 rectangle(1e5),
+                disc(position, axis, 0.0).shape,
+                disc(position, axis, 1e5).shape,
+                Shape::Ies {
+                    position,
+                    axis,
+                    across_u: DVec3::X,
+                    across_v: -DVec3::Y,
+                    photometry: Arc::clone(&photometry),
+                },
             ] {
                 let lamp = Light {
                     shape,
@@ -591,7 +679,7 @@ fn lumen_candela_and_nits_are_one_light() {
     assert!(matches!(spot.lamps[0].kind, LampKind::Spot { .. }));
     let lighting = spot.lighting(&spot.scenes[0]);
     let exposure = PI / lighting.reference_lux;
-    let beam = lighting.lights[0];
+    let beam = &lighting.lights[0];
     let lumen: f64 = (0..STEPS)
         .map(|i| {
             let cos = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(STEPS);

@@ -180,12 +180,16 @@ fn signatures(text: &str, keyword: &str, open: char, close: char) -> BTreeMap<St
 const CPU_ONLY: [&str; 3] = ["directional_albedo", "normal_reflectance", "polygon_form"];
 /// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
 /// pixel: these stand for methods, `Light::at`, `InterfaceTable::at` and `mean_at`.
-const GPU_ONLY: [&str; 7] = [
+const GPU_ONLY: [&str; 11] = [
+    "angle_of",
     "fit_powers",
     "interface_at",
     "interface_mean_at",
     "interface_row",
+    "ies_angles",
+    "light_disc",
     "light_distant",
+    "light_ies",
     "light_punctual",
     "light_rectangle",
 ];
@@ -301,6 +305,9 @@ impl Sentinel {
             cos_falloff: self.f32(),
             half_edge_v: self.vec3(),
             distance_squared_min: self.f32(),
+            rings: self.u32(),
+            profile_row: self.u32(),
+            profile_rows: self.u32(),
         })
     }
 

@@ -181,7 +181,7 @@ impl ExposureReport {
             .lamps
             .iter()
             .map(|lamp| &exhibit.lamps[*lamp])
-            .filter(|lamp| lamp.kind.is_shown() && !lamp.kind.is_behind());
+            .filter(|lamp| !lamp.kind.is_behind());
         let mut light: Vec<LightReport> = lamps
             .zip(&lighting.lights)
             .map(|(lamp, light)| LightReport {

@@ -7,14 +7,14 @@
 //! centre of the sheet at rest: x right, y **up**, z towards the viewer; lamps live here and
 //! stay where they are when the sheet is turned over.
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use glam::{DAffine2, DVec2, DVec3};
 use serde::Serialize;
 
 use crate::{
     maps::{ColourEncoding, ColourMapName, NormalY},
-    optics::medium::MediumId,
+    optics::{medium::MediumId, photometry::Photometry},
     units::{Candela, Degrees, Kelvin, Lux, Micrometres, Millimetres, Nits},
 };
 
@@ -252,8 +252,16 @@ pub struct Hotspot {
 pub struct Lamp {
     pub id: String,
     pub title: Wording,
-    pub kelvin: Kelvin,
+    pub colour: LampColour,
     pub kind: LampKind,
+}
+
+/// The colour of a lamp's light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LampColour {
+    Temperature(Kelvin),
+    /// x, y for the 2° observer, from the lamp's spectrum.
+    Chromaticity([f64; 2]),
 }
 
 /// Places are in the table frame; every lamp that has a direction looks at the sheet's centre
@@ -286,16 +294,16 @@ pub enum LampKind {
         aim_mm: DVec3,
         size_mm: DVec2,
     },
-    /// One-sided Lambertian disc. Not shown yet.
+    /// One-sided Lambertian disc.
     Disc {
         luminance: Nits,
         position_mm: DVec3,
         aim_mm: DVec3,
         diameter_mm: f64,
     },
-    /// A photometric file. Not shown yet.
+    /// A small lamp with the intensities of a photometric file.
     Ies {
-        path: PathBuf,
+        photometry: Arc<Photometry>,
         position_mm: DVec3,
         aim_mm: DVec3,
     },
@@ -304,18 +312,6 @@ pub enum LampKind {
 }
 
 impl LampKind {
-    /// Whether this version shows the light of such a lamp.
-    pub fn is_shown(&self) -> bool {
-        match self {
-            Self::Distant { .. }
-            | Self::Point { .. }
-            | Self::Spot { .. }
-            | Self::Rectangle { .. }
-            | Self::LightTable { .. } => true,
-            Self::Disc { .. } | Self::Ies { .. } => false,
-        }
-    }
-
     /// Whether it shines through the sheet from behind, and on neither side of it.
     pub fn is_behind(&self) -> bool {
         matches!(self, Self::LightTable { .. })

@@ -1,15 +1,16 @@
 //! A scene's lamps as light: colour, exposure and shape, ready for any renderer.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
-use super::exhibit::{Exhibit, LampKind, Scene};
+use super::exhibit::{Exhibit, LampColour, LampKind, Scene};
 use crate::{
     colour,
     optics::{
         lamp::{Light, Shape},
         lamp_units::area_axes,
+        photometry::Photometry,
     },
     units::{Degrees, Kelvin},
 };
@@ -41,6 +42,19 @@ pub struct Lighting {
     pub reference_lux: f64,
 }
 
+impl Lighting {
+    /// The photometric files of the IES lamps, in the order of `lights`.
+    pub fn photometry(&self) -> Vec<Arc<Photometry>> {
+        self.lights
+            .iter()
+            .filter_map(|light| match &light.shape {
+                Shape::Ies { photometry, .. } => Some(Arc::clone(photometry)),
+                _ => None,
+            })
+            .collect()
+    }
+}
+
 impl Exhibit {
     /// The light of `scene`.
     pub fn lighting(&self, scene: &Scene) -> Lighting {
@@ -54,7 +68,7 @@ impl Exhibit {
                 let (shape, amount) = shape(&lamp.kind)?;
                 Some(Light {
                     shape,
-                    amount: tint(lamp.kelvin, white) * amount,
+                    amount: tint(lamp.colour, white) * amount,
                 })
             })
             .collect();
@@ -65,7 +79,7 @@ impl Exhibit {
                 let lamp = &self.lamps[lamp];
                 match lamp.kind {
                     LampKind::LightTable { luminance } => {
-                        Some(tint(lamp.kelvin, white) * luminance.0)
+                        Some(tint(lamp.colour, white) * luminance.0)
                     }
                     _ => None,
                 }
@@ -90,7 +104,8 @@ impl Exhibit {
             light.amount *= exposure;
         }
         light_table *= exposure;
-        let ambient = tint(scene.ambient.kelvin, white) * (ambient_lux * exposure);
+        let ambient =
+            tint(LampColour::Temperature(scene.ambient.kelvin), white) * (ambient_lux * exposure);
         Lighting {
             lights,
             ambient,
@@ -107,8 +122,11 @@ pub fn light_table_lux(nits: f64) -> f64 {
 }
 
 /// Linear sRGB of unit luminance for a lamp seen by an eye adapted to `white`.
-fn tint(lamp: Kelvin, white: Kelvin) -> DVec3 {
-    DVec3::from_array(colour::lamp_rgb(lamp.0, white.0))
+fn tint(lamp: LampColour, white: Kelvin) -> DVec3 {
+    DVec3::from_array(match lamp {
+        LampColour::Temperature(kelvin) => colour::lamp_rgb(kelvin.0, white.0),
+        LampColour::Chromaticity(xy) => colour::lamp_xy_rgb(xy, white.0),
+    })
 }
 
 /// Unit vector in the table frame: azimuth 0° is right and 90° the top edge.
@@ -118,8 +136,7 @@ pub fn direction(elevation: Degrees, azimuth: Degrees) -> DVec3 {
     DVec3::new(cos_e * cos_a, cos_e * sin_a, sin_e)
 }
 
-/// Shape and unexposed amount; `None` for a light table, which lights neither side, and for lamps
-/// that this version does not show.
+/// Shape and unexposed amount; `None` for a light table, which lights neither side.
 fn shape(kind: &LampKind) -> Option<(Shape, f64)> {
     Some(match *kind {
         LampKind::Distant {
@@ -166,7 +183,33 @@ fn shape(kind: &LampKind) -> Option<(Shape, f64)> {
             let amount = luminance.0 * size_mm.x * size_mm.y;
             (rectangle(position_mm, aim_mm, size_mm), amount)
         }
-        LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => return None,
+        LampKind::Disc {
+            luminance,
+            position_mm,
+            aim_mm,
+            diameter_mm,
+        } => {
+            let radius = diameter_mm / 2.0;
+            let amount = luminance.0 * PI * radius * radius;
+            (disc(position_mm, aim_mm, radius), amount)
+        }
+        LampKind::Ies {
+            ref photometry,
+            position_mm,
+            aim_mm,
+        } => {
+            let [across_u, across_v, axis] =
+                area_axes(position_mm, aim_mm).unwrap_or([DVec3::X, DVec3::Y, -DVec3::Z]);
+            let shape = Shape::Ies {
+                position: position_mm,
+                axis,
+                across_u,
+                across_v,
+                photometry: Arc::clone(photometry),
+            };
+            (shape, photometry.peak() * MM2_PER_M2)
+        }
+        LampKind::LightTable { .. } => return None,
     })
 }
 
@@ -183,6 +226,29 @@ fn rectangle(centre: DVec3, aim: DVec3, size_mm: DVec2) -> Shape {
         half_u,
         half_v,
         grid: grid_for(apparent),
+    }
+}
+
+/// A disc at `centre` that faces `aim`.
+fn disc(centre: DVec3, aim: DVec3, radius: f64) -> Shape {
+    let [u, v, axis] = area_axes(centre, aim).unwrap_or([DVec3::X, DVec3::Y, -DVec3::Z]);
+    let apparent = 2.0 * radius / (aim - centre).length().max(1e-6);
+    Shape::Disc {
+        centre,
+        axis,
+        half_u: u * radius,
+        half_v: v * radius,
+        rings: rings_for(apparent),
+    }
+}
+
+/// In how many rings to sample a disc whose diameter is `apparent` times its distance.
+pub fn rings_for(apparent: f64) -> u32 {
+    match apparent {
+        a if a < 0.3 => 1,
+        a if a < 1.0 => 2,
+        a if a < 2.0 => 3,
+        _ => 5,
     }
 }
 

@@ -184,12 +184,6 @@ impl Overrides {
                 resolve(&option, "lamp", spec, ids)
             };
             match index {
-                Ok(index) if !exhibit.lamps[index].kind.is_shown() => faults.push(fault(
-                    &option,
-                    format!("{}, a kind of lamp that is not shown yet", quote(spec)),
-                    "lamps of the kinds distant, point, spot, rectangle and light-table",
-                    "choose one of these",
-                )),
                 Ok(index) => lamps.push(index),
                 Err(found) => faults.extend(found),
             }

@@ -1,24 +1,29 @@
 //! Light arriving at a point of the sheet, from lamps in photometric units.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::quadrature::gauss_legendre;
+use super::{
+    photometry::Photometry,
+    quadrature::{disc_rule, gauss_legendre},
+};
 
 /// Squared distances (mm²) are never taken smaller: 1e-4 m².
 pub const DISTANCE2_MIN_MM2: f64 = 100.0;
 
 /// A lamp as the shader sees it: pre-exposed, and placed in any one frame in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Light {
     pub shape: Shape,
-    /// Linear sRGB amount: illuminance facing a distant lamp, otherwise intensity times
-    /// 1e6 mm²/m² (for a rectangle, luminance times area), already divided by the reference
+    /// Linear sRGB amount: illuminance facing a distant lamp, otherwise (peak) intensity
+    /// times 1e6 mm²/m² (for a rectangle or a disc, luminance times area), already divided by the reference
     /// illuminance and times π, so that a perfect diffuser facing that illuminance shows 1.
     pub amount: DVec3,
 }
 
 /// Where the light comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Unit vector towards the lamp.
     Distant {
@@ -43,6 +48,24 @@ pub enum Shape {
         half_v: DVec3,
         grid: u32,
     },
+    /// A Lambertian disc whose radius along two directions is `half_u` and `half_v`; it shines
+    /// along `axis` only. Sampled by [`disc_rule`] of `rings` rings.
+    Disc {
+        centre: DVec3,
+        axis: DVec3,
+        half_u: DVec3,
+        half_v: DVec3,
+        rings: u32,
+    },
+    /// A small lamp with the intensities of a photometric file, as shares of their peak. Unit
+    /// vectors: `axis` along γ = 0, `across_u` and `across_v` at γ = 90° along C = 0° and 90°.
+    Ies {
+        position: DVec3,
+        axis: DVec3,
+        across_u: DVec3,
+        across_v: DVec3,
+        photometry: Arc<Photometry>,
+    },
 }
 
 /// Light at a point from one direction.
@@ -58,6 +81,21 @@ impl Light {
     /// The light at `p` (mm), one [`Incidence`] for each sample of the lamp.
     pub fn at(&self, p: DVec3) -> Vec<Incidence> {
         match self.shape {
+            Shape::Ies {
+                position,
+                axis,
+                across_u,
+                across_v,
+                ref photometry,
+            } => {
+                let share = |l: DVec3| {
+                    let (u, v) = (-across_u.dot(l), -across_v.dot(l));
+                    // Without a direction, at the lamp's own place, γ is 0: never −0.
+                    let gamma = u.hypot(v).atan2(0.0 - axis.dot(l));
+                    photometry.intensity(gamma, v.atan2(u)) / photometry.peak()
+                };
+                vec![self.inverse_square(position - p, share)]
+            }
             Shape::Distant { towards } => vec![Incidence {
                 l: towards,
                 e: self.amount,
@@ -88,6 +126,19 @@ impl Light {
                     self.inverse_square(sample - p, |l| share * (-axis.dot(l)).max(0.0))
                 })
                 .collect(),
+            Shape::Disc {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                rings,
+            } => (0..4 * rings * rings)
+                .map(|i| {
+                    let ([x, y], share) = disc_rule(rings, i);
+                    let sample = centre + half_u * x + half_v * y;
+                    self.inverse_square(sample - p, |l| share * (-axis.dot(l)).max(0.0))
+                })
+                .collect(),
         }
     }
 
@@ -112,6 +163,19 @@ impl Light {
     /// The same lamp seen from a frame that is `rotate`d (world to frame) about the origin.
     pub fn rotated(&self, rotate: glam::DQuat) -> Self {
         let shape = match self.shape {
+            Shape::Ies {
+                position,
+                axis,
+                across_u,
+                across_v,
+                ref photometry,
+            } => Shape::Ies {
+                position: rotate * position,
+                axis: rotate * axis,
+                across_u: rotate * across_u,
+                across_v: rotate * across_v,
+                photometry: Arc::clone(photometry),
+            },
             Shape::Distant { towards } => Shape::Distant {
                 towards: rotate * towards,
             },
@@ -141,6 +205,19 @@ impl Light {
                 half_u: rotate * half_u,
                 half_v: rotate * half_v,
                 grid,
+            },
+            Shape::Disc {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                rings,
+            } => Shape::Disc {
+                centre: rotate * centre,
+                axis: rotate * axis,
+                half_u: rotate * half_u,
+                half_v: rotate * half_v,
+                rings,
             },
         };
         Self {

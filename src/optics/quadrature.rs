@@ -1,13 +1,14 @@
 //! Gauss-Legendre rules: few points for smooth integrands, exact for polynomials of degree
 //! 2n − 1.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Points along each edge that a rectangle can be sampled at.
-pub const GRIDS: std::ops::RangeInclusive<u32> = 2..=7;
+/// Points along each edge that a rectangle can be sampled at, and rings that a disc can.
+pub const GRIDS: std::ops::RangeInclusive<u32> = 1..=7;
 
-/// Nodes on [−1, 1] and weights (of sum 1) of the rules of 2 to 7 points, one after the other (Abramowitz & Stegun, table 25.4).
-pub const GAUSS_LEGENDRE: [[f64; 2]; 27] = [
+/// Nodes on [−1, 1] and weights (of sum 1) of the rules of 1 to 7 points, one after the other (Abramowitz & Stegun, table 25.4).
+pub const GAUSS_LEGENDRE: [[f64; 2]; 28] = [
+    [0.0, 1.0],
     [-0.5773502691896257, 0.5],
     [0.5773502691896257, 0.5],
     [-0.7745966692414834, 0.27777777777777785],
@@ -39,7 +40,34 @@ pub const GAUSS_LEGENDRE: [[f64; 2]; 27] = [
 
 /// Node on [−1, 1] and weight of point `i` of the rule of `grid` points, `grid` in [`GRIDS`].
 pub fn gauss_legendre(grid: u32, i: u32) -> [f64; 2] {
-    GAUSS_LEGENDRE[(grid * (grid - 1) / 2 - 1 + i) as usize]
+    GAUSS_LEGENDRE[(grid * (grid - 1) / 2 + i) as usize]
+}
+
+/// The first quarter of a ring's azimuths in the rule of `rings` rings: unit vector `i` of
+/// `rings`. The other quarters are this one turned.
+pub fn disc_spoke(rings: u32, i: u32) -> [f64; 2] {
+    let (sin, cos) = ((f64::from(i) + 0.5) / f64::from(rings) * FRAC_PI_2).sin_cos();
+    [cos, sin]
+}
+
+/// Place on the unit disc and weight (of sum 1) of point `i` of a rule of `rings` rings of
+/// 4 `rings` points each, `rings` in [`GRIDS`].
+///
+/// Even azimuths times Gauss-Legendre over the square of the radius, in which a disc's area is
+/// even: exact for polynomials of degree 4 `rings` − 1 in the plane (Abramowitz & Stegun,
+/// 25.4.61, gives the first of them).
+pub fn disc_rule(rings: u32, i: u32) -> ([f64; 2], f64) {
+    let spokes = 4 * rings;
+    let [node, weight] = gauss_legendre(rings, i / spokes);
+    let [cos, sin] = disc_spoke(rings, i % rings);
+    let [x, y] = match i % spokes / rings {
+        0 => [cos, sin],
+        1 => [-sin, cos],
+        2 => [-cos, -sin],
+        _ => [sin, -cos],
+    };
+    let r = (0.5 + 0.5 * node).sqrt();
+    ([r * x, r * y], weight / f64::from(spokes))
 }
 
 /// Value at `x` of a polynomial, its coefficients from the constant upwards (Horner).
@@ -106,6 +134,38 @@ mod tests {
         let c = through(&nodes, &nodes.map(cubic));
         for (found, expected) in c.iter().zip([1.0, -2.0, 0.0, 0.5, 0.0, 0.0, 0.0]) {
             assert!((found - expected).abs() < 1e-11, "{c:?}");
+        }
+    }
+
+    #[test]
+    fn disc_rules_are_exact_up_to_their_degree() {
+        for rings in GRIDS {
+            let mean = |p: i32, q: i32| -> f64 {
+                (0..4 * rings * rings)
+                    .map(|i| disc_rule(rings, i))
+                    .map(|([x, y], weight)| weight * x.powi(p) * y.powi(q))
+                    .sum()
+            };
+            // Over the unit disc the mean of r²ᵏ is 1/(k + 1), and that of x²ᵏ is this times
+            // the mean of cos²ᵏ, (2k − 1)!!/(2k)!!.
+            let mut wallis = 1.0;
+            for k in 0..2 * rings as i32 {
+                let exact = wallis / f64::from(k + 1);
+                assert!(
+                    (mean(2 * k, 0) - exact).abs() < 1e-14,
+                    "{rings}: x^{}",
+                    2 * k
+                );
+                assert!(
+                    (mean(0, 2 * k) - exact).abs() < 1e-14,
+                    "{rings}: y^{}",
+                    2 * k
+                );
+                assert!(mean(2 * k + 1, 0).abs() < 1e-14);
+                assert!(mean(1, 2 * k).abs() < 1e-14);
+                wallis *= f64::from(2 * k + 1) / f64::from(2 * k + 2);
+            }
+            assert!((mean(4 * rings as i32, 0) - wallis / f64::from(2 * rings + 1)).abs() > 1e-9);
         }
     }
 }

@@ -25,6 +25,8 @@ use bevy::{
 use super::uniform::PaperUniform;
 use crate::{manifest::exhibit::MAX_OVERLAYS, needs::Terms, optics::tier::Tier};
 
+/// Binding of the profiles of IES lamps.
+const PROFILE_BINDING: u32 = 11;
 /// Binding of the first overlay.
 const OVERLAY_BINDING: u32 = 16;
 
@@ -39,6 +41,8 @@ pub struct PaperMaps {
     /// Albedo of the other side, for light that comes through it.
     pub other: Option<Handle<Image>>,
     pub overlays: Vec<Handle<Image>>,
+    /// Of IES lamps, see [`super::upload::profile_image`].
+    pub profiles: Option<Handle<Image>>,
 }
 
 /// One side of a sheet.
@@ -133,6 +137,19 @@ impl AsBindGroup for PaperMaterial {
                 OwnedBindingResource::TextureView(TextureViewDimension::D2, view),
             ));
         }
+        let profiles = match &self.maps.profiles {
+            None => &fallback.d2,
+            Some(handle) => images
+                .get(handle)
+                .ok_or(AsBindGroupError::RetryNextUpdate)?,
+        };
+        bindings.push((
+            PROFILE_BINDING,
+            OwnedBindingResource::TextureView(
+                TextureViewDimension::D2,
+                profiles.texture_view.clone(),
+            ),
+        ));
         let filtering = SamplerBindingType::Filtering;
         bindings.push((
             1,
@@ -150,6 +167,9 @@ impl AsBindGroup for PaperMaterial {
             uniform_buffer::<PaperUniform>(false).build(0, stages),
             sampler(SamplerBindingType::Filtering).build(1, ShaderStages::FRAGMENT),
         ];
+        // Read texel by texel: 32-bit floats are not filtered everywhere.
+        let profiles = texture_2d(TextureSampleType::Float { filterable: false });
+        entries.push(profiles.build(PROFILE_BINDING, ShaderStages::FRAGMENT));
         let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
         entries.extend(
             [2, 3, 4, 5, 9, 10]
@@ -226,6 +246,7 @@ impl Material for PaperMaterial {
             ("AMBIENT", terms.ambient),
             ("AREA_LAMPS", terms.area_lamps),
             ("DISTANT_LAMPS", terms.distant_lamps),
+            ("IES", terms.ies),
             ("ONE_LAMP", terms.one_lamp),
             ("PARALLEL_EYE", terms.parallel_eye),
             ("OVERLAYS", terms.overlays > 0),

@@ -10,7 +10,7 @@ use crate::{
     optics::{
         ink::{FILM_TERMS, Film},
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
-        quadrature::GAUSS_LEGENDRE,
+        quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
         study::{Split, Study, Through},
         table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
     },
@@ -32,11 +32,15 @@ pub struct LightUniform {
     pub cos_falloff: f32,
     pub half_edge_v: Vec3,
     pub distance_squared_min: f32,
+    pub rings: u32,
+    pub profile_row: u32,
+    pub profile_rows: u32,
 }
 
 impl LightUniform {
-    /// Narrows `light`. With `as_points`, a rectangle becomes a point in its middle that
-    /// shines like a Lambertian facet (the draft tier).
+    /// Narrows `light`. With `as_points`, a rectangle or disc becomes a point in its middle
+    /// that shines like a Lambertian facet (the draft tier). An IES lamp's profile is found by
+    /// [`PaperUniform::set_lights`].
     pub fn new(light: &Light, as_points: bool) -> Self {
         let amount = light.amount.as_vec3();
         let near = Self {
@@ -49,6 +53,20 @@ impl LightUniform {
             ..Self::default()
         };
         match light.shape {
+            Shape::Ies {
+                position,
+                axis,
+                across_u,
+                across_v,
+                ref photometry,
+            } => Self {
+                place: position.as_vec3(),
+                axis: axis.as_vec3(),
+                half_edge_u: across_u.as_vec3(),
+                half_edge_v: across_v.as_vec3(),
+                profile_rows: photometry.rows() as u32,
+                ..near
+            },
             Shape::Distant { towards } => Self {
                 place: towards.as_vec3(),
                 near: 0.0,
@@ -71,12 +89,16 @@ impl LightUniform {
                 cos_falloff: cos_falloff as f32,
                 ..near
             },
-            Shape::Rectangle { centre, axis, .. } if as_points => Self {
-                place: centre.as_vec3(),
-                axis: axis.as_vec3(),
-                cos_falloff: 0.0,
-                ..near
-            },
+            Shape::Rectangle { centre, axis, .. } | Shape::Disc { centre, axis, .. }
+                if as_points =>
+            {
+                Self {
+                    place: centre.as_vec3(),
+                    axis: axis.as_vec3(),
+                    cos_falloff: 0.0,
+                    ..near
+                }
+            }
             Shape::Rectangle {
                 centre,
                 axis,
@@ -87,6 +109,20 @@ impl LightUniform {
                 place: centre.as_vec3(),
                 axis: axis.as_vec3(),
                 grid,
+                half_edge_u: half_u.as_vec3(),
+                half_edge_v: half_v.as_vec3(),
+                ..near
+            },
+            Shape::Disc {
+                centre,
+                axis,
+                half_u,
+                half_v,
+                rings,
+            } => Self {
+                place: centre.as_vec3(),
+                axis: axis.as_vec3(),
+                rings,
                 half_edge_u: half_u.as_vec3(),
                 half_edge_v: half_v.as_vec3(),
                 ..near
@@ -288,9 +324,18 @@ impl PaperUniform {
         for (slot, light) in self.lights.iter_mut().zip(lights) {
             *slot = LightUniform::new(&light.rotated(local_from_table), as_points);
         }
+        // One profile under the other, as `profile_image` stacks them.
+        let mut row = 0;
+        for slot in &mut self.lights[..self.lamp_count as usize] {
+            slot.profile_row = row;
+            row += slot.profile_rows;
+        }
         self.ambient = ambient.as_vec3();
-        self.quadrature =
-            GAUSS_LEGENDRE.map(|[node, weight]| DVec4::new(node, weight, 0.0, 0.0).as_vec4());
+        let points = GRIDS.flat_map(|points| (0..points).map(move |i| (points, i)));
+        for (slot, (points, i)) in self.quadrature.iter_mut().zip(points) {
+            let ([node, weight], [cos, sin]) = (gauss_legendre(points, i), disc_spoke(points, i));
+            *slot = DVec4::new(node, weight, cos, sin).as_vec4();
+        }
     }
 
     /// Sets the place of the normal map, and how its texels are coded.

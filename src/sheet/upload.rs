@@ -1,12 +1,17 @@
 //! Maps as textures.
 
+use std::sync::Arc;
+
 use bevy::{
     asset::RenderAssetUsages,
     image::{Image, ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 
-use crate::maps::{Pyramid, Texels};
+use crate::{
+    maps::{Pyramid, Texels},
+    optics::photometry::{COLUMNS, Photometry},
+};
 
 /// A map with its mip chain, filtered linearly; `anisotropy` 1 samples exactly as the
 /// closed-form tests expect, 16 keeps tilted sheets sharp. Devices
@@ -40,6 +45,22 @@ pub fn map_image(pyramid: Pyramid, anisotropy: u16, reads_unorm16: bool) -> Imag
         ..ImageSamplerDescriptor::default()
     });
     image
+}
+
+/// The profiles of a scene's IES lamps, one under the other; `None` without such lamps.
+pub fn profile_image(photometry: &[Arc<Photometry>]) -> Option<Image> {
+    let rows: usize = photometry.iter().map(|lamp| lamp.rows()).sum();
+    if rows == 0 {
+        return None;
+    }
+    let mut image = texture(COLUMNS as u32, rows as u32, TextureFormat::R32Float);
+    let texels = photometry.iter().flat_map(|lamp| lamp.baked());
+    image.data = Some(
+        texels
+            .flat_map(|share| (share as f32).to_le_bytes())
+            .collect(),
+    );
+    Some(image)
 }
 
 fn format(pyramid: &Pyramid) -> TextureFormat {

@@ -1,5 +1,7 @@
 //! The sides of the sheet as entities.
 
+use std::sync::Arc;
+
 use bevy::{camera::visibility::NoFrustumCulling, ecs::system::SystemParam, prelude::*};
 use glam::{DMat4, DQuat, DVec3};
 
@@ -16,6 +18,7 @@ use crate::{
     optics::{
         fresnel::normal_reflectance,
         microfacet::ALPHA_MIN,
+        photometry::Photometry,
         slab::Slab,
         study::Study,
         table::InterfaceTable,
@@ -25,6 +28,7 @@ use crate::{
         PaperMaps, PaperMaterial,
         mesh::SideSurface,
         uniform::{InterfaceUniform, MapPlace, PaperUniform},
+        upload::profile_image,
     },
 };
 
@@ -39,6 +43,8 @@ pub struct Arranged {
     needs: Option<(Needs, Request)>,
     drawing: Option<usize>,
     sides: Vec<ArrangedSide>,
+    /// The photometric files of the IES lamps, and their texture.
+    profiles: (Vec<Arc<Photometry>>, Option<Handle<Image>>),
     settled: bool,
 }
 
@@ -56,6 +62,7 @@ impl Arranged {
             needs: None,
             drawing: None,
             sides: Vec::new(),
+            profiles: (Vec::new(), None),
             settled: false,
         }
     }
@@ -79,6 +86,7 @@ pub struct Supplies<'w> {
     waker: Option<Res<'w, Waker>>,
     meshes: ResMut<'w, Assets<Mesh>>,
     materials: ResMut<'w, Assets<PaperMaterial>>,
+    images: ResMut<'w, Assets<Image>>,
 }
 
 /// Brings the stage in line with [`Shown`]; until all its maps are there, the last picture
@@ -94,6 +102,7 @@ pub fn arrange(
         waker,
         mut meshes,
         mut materials,
+        mut images,
     } = supplies;
     if arranged.settled && !shown.is_changed() {
         return;
@@ -167,9 +176,18 @@ pub fn arrange(
         arranged.drawing = Some(shown.scene.drawing);
     }
     let lighting = shown.exhibit.lighting(&shown.scene);
+    let photometry = lighting.photometry();
+    // The exhibit shares what it has read: another file is another place in memory.
+    let same = |(a, b): (&Arc<Photometry>, &Arc<Photometry>)| Arc::ptr_eq(a, b);
+    let held = &arranged.profiles.0;
+    if held.len() != photometry.len() || !held.iter().zip(&photometry).all(same) {
+        let image = profile_image(&photometry).map(|image| images.add(image));
+        arranged.profiles = (photometry, image);
+    }
     for side in &arranged.sides {
         if let Some(mut material) = materials.get_mut(&side.material) {
             place(&mut material.paper, &shown, drawing, side, &lighting);
+            material.maps.profiles.clone_from(&arranged.profiles.1);
         }
     }
     arranged.settled = true;

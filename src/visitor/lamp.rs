@@ -36,8 +36,10 @@ impl LampPlace {
             }),
             LampKind::Point { position_mm, .. }
             | LampKind::Spot { position_mm, .. }
-            | LampKind::Rectangle { position_mm, .. } => Self::towards(position_mm),
-            LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => None,
+            | LampKind::Rectangle { position_mm, .. }
+            | LampKind::Disc { position_mm, .. }
+            | LampKind::Ies { position_mm, .. } => Self::towards(position_mm),
+            LampKind::LightTable { .. } => None,
         }
     }
 
@@ -61,10 +63,12 @@ impl LampPlace {
             }
             LampKind::Point { position_mm, .. }
             | LampKind::Spot { position_mm, .. }
-            | LampKind::Rectangle { position_mm, .. } => {
+            | LampKind::Rectangle { position_mm, .. }
+            | LampKind::Disc { position_mm, .. }
+            | LampKind::Ies { position_mm, .. } => {
                 *position_mm = towards * position_mm.length();
             }
-            LampKind::Disc { .. } | LampKind::Ies { .. } | LampKind::LightTable { .. } => {}
+            LampKind::LightTable { .. } => {}
         }
     }
 
@@ -121,7 +125,7 @@ impl LampPlace {
 mod tests {
     use super::*;
     use crate::{
-        manifest::exhibit::Wording,
+        manifest::exhibit::{LampColour, Wording},
         units::{Candela, Kelvin},
     };
 
@@ -157,7 +161,7 @@ mod tests {
         let mut lamp = Lamp {
             id: "near".into(),
             title: Wording::default(),
-            kelvin: Kelvin(3000.0),
+            colour: LampColour::Temperature(Kelvin(3000.0)),
             kind: LampKind::Point {
                 intensity: Candela(10.0),
                 position_mm: DVec3::new(-300.0, 0.0, 400.0),

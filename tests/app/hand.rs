@@ -345,7 +345,7 @@ fn a_lowered_lamp_darkens_the_sheet() {
     let lux = |hand: &Hand| {
         let shown = hand.shown();
         let lighting = shown.exhibit.lighting(&shown.scene);
-        let [light] = lighting.lights[..] else {
+        let [ref light] = lighting.lights[..] else {
             panic!("one lamp");
         };
         light.illuminance(DVec3::ZERO, DVec3::Z).y

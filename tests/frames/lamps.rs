@@ -116,6 +116,85 @@ fn a_rectangle_is_its_form_factor() {
 }
 
 #[test]
+fn a_disc_is_its_closed_form() {
+    // π L r²/(r² + d²), seen in a tier that samples the disc.
+    let lamp = "kind = \"disc\"\nnits = 2000\nposition_mm = [0, 0, 400]\ndiameter_mm = 300";
+    let fixture = Fixture::new(&manifest(&[lamp.into()], ""), plain);
+    let exhibit = fixture.exhibit();
+    let mut room = darkroom(1);
+    let scene = &exhibit.scenes[0];
+    let frame = picture(&mut room, &exhibit, scene, Tier::Lambert, [5, 5]);
+    let lux =
+        std::f64::consts::PI * 2000.0 * 150.0f64.powi(2) / (150.0f64.powi(2) + 400.0f64.powi(2));
+    let exact = lux / REFERENCE_LUX * f64::from(ALBEDO[0]);
+    let found = pixel(&frame, 2, 2)[0];
+    assert!((found / exact - 1.0).abs() < CLOSED_FORM, "{found} {exact}");
+}
+
+#[test]
+fn an_ies_lamp_follows_its_file_around_and_along_its_axis() {
+    // Straight down from 1 m: C = 0° is right and 90° up. Bilinear in both angles, so that the
+    // file itself is the closed form; its second lamp stands behind the first in the texture.
+    let (vertical, horizontal) = (
+        [0.0f64, 30.0, 60.0, 90.0],
+        [0.0f64, 90.0, 180.0, 270.0, 360.0],
+    );
+    let candela = |i: usize, j: usize| (400.0 - 120.0 * i as f64) * (1.0 + 0.2 * (j % 4) as f64);
+    let file = |factor: f64| {
+        let mut text = String::from("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 4 5 1 2 0 0 0\n1 1 9\n");
+        text += "0 30 60 90\n0 90 180 270 360\n";
+        for j in 0..5 {
+            for i in 0..4 {
+                text += &format!("{} ", factor * candela(i, j));
+            }
+        }
+        text
+    };
+    let lamp =
+        |name: &str| format!("kind = \"ies\"\nfile = \"{name}\"\nposition_mm = [0, 0, 1000]");
+    let text = manifest(&[lamp("one.ies"), lamp("two.ies")], "")
+        .replace("size_mm = [100, 100]", "size_mm = [2000, 2000]")
+        .replace(
+            "centre_mm = [50, 50], width_mm = 1 }",
+            "centre_mm = [1000, 1000], width_mm = 1600 }",
+        )
+        .replace("lamps = [\"lamp-1\"]", "lamps = [\"lamp-0\", \"lamp-1\"]");
+    let fixture = Fixture::new(&text, |folder| {
+        plain(folder);
+        std::fs::write(folder.join("one.ies"), file(1.0)).expect("a lamp");
+        std::fs::write(folder.join("two.ies"), file(0.5)).expect("a lamp");
+    });
+    let exhibit = fixture.exhibit();
+    let mut room = darkroom(1);
+    for (scene, factor) in exhibit.scenes.iter().zip([1.0, 1.5]) {
+        const SIZE: usize = 16;
+        let frame = picture(&mut room, &exhibit, scene, Tier::Lambert, [SIZE as u32; 2]);
+        for row in 0..SIZE {
+            for column in 0..SIZE {
+                let mm = |i: usize| (i as f64 + 0.5 - SIZE as f64 / 2.0) * 100.0;
+                let (x, y) = (mm(column), -mm(row));
+                let gamma = x.hypot(y).atan2(1000.0).to_degrees();
+                let c = y.atan2(x).to_degrees().rem_euclid(360.0);
+                let place = |angles: &[f64], at: f64| {
+                    let i = angles.partition_point(|angle| *angle <= at) - 1;
+                    (i, (at - angles[i]) / (angles[i + 1] - angles[i]))
+                };
+                let ((i, s), (j, t)) = (place(&vertical, gamma), place(&horizontal, c));
+                let along = |j: usize| candela(i, j) * (1.0 - s) + candela(i + 1, j) * s;
+                let cd = factor * (along(j) * (1.0 - t) + along(j + 1) * t);
+                let lux = cd * gamma.to_radians().cos().powi(3);
+                let exact = lux / REFERENCE_LUX * f64::from(ALBEDO[0]);
+                let found = pixel(&frame, column as u32, row as u32)[0];
+                assert!(
+                    (found / exact - 1.0).abs() < CLOSED_FORM,
+                    "{x}, {y}: {found} {exact}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn eight_lamps_add_up() {
     let one = "kind = \"distant\"\nlux_at_sheet = 100\nelevation_deg = 30\nazimuth_deg = ";
     let lamps: Vec<String> = (0..8).map(|i| format!("{one}{}", 45 * i)).collect();

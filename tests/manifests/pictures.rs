@@ -7,6 +7,10 @@ use image::{ColorType, GrayImage, ImageFormat, RgbImage};
 /// A sheet of 200 × 100 mm at this size has square pixels.
 const SHEET: [u32; 2] = [20, 10];
 
+/// A lamp of 500 cd along its axis, none from 90° on.
+const IES: &str =
+    "IESNA:LM-63-2002\nTILT=NONE\n1 -1 500 3 1 1 2 0 0 0\n1 1 40\n0 45 90\n0\n1 .7 0\n";
+
 /// Fills `folder` with files; symbolic links lead to `outside`.
 pub fn write(folder: &Path, outside: &Path) {
     let rgb = |name: &str, [width, height]: [u32; 2]| {
@@ -49,7 +53,11 @@ pub fn write(folder: &Path, outside: &Path) {
     .unwrap();
     fs::create_dir(folder.join("folder.png")).unwrap();
 
-    fs::write(folder.join("lamp.ies"), "IESNA:LM-63-2002\n").unwrap();
+    fs::write(folder.join("lamp.ies"), IES).unwrap();
+    fs::write(folder.join("type-b.ies"), IES.replace("3 1 1 2", "3 1 2 2")).unwrap();
+    fs::write(folder.join("tilt.ies"), IES.replace("NONE", "INCLUDE")).unwrap();
+    fs::write(folder.join("short.ies"), IES.replace(".7 0", "")).unwrap();
+    fs::write(folder.join("nan.ies"), IES.replace(".7", "nan")).unwrap();
     fs::write(folder.join("sheet.glb"), model()).unwrap();
     fs::write(
         folder.join("bare.glb"),

@@ -5,8 +5,8 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use recto::{
     manifest::{
-        CompareMode, Exhibit, FlipAxis, LampKind, MediaContent, Member, OverlayKind, SideName,
-        Source, Surface, check_shape, create,
+        CompareMode, Exhibit, FlipAxis, LampColour, LampKind, MediaContent, Member, OverlayKind,
+        SideName, Source, Surface, check_shape, create,
     },
     units::{Candela, Degrees, Kelvin, Lux, Nits},
 };
@@ -61,7 +61,10 @@ fn a_picture_and_a_size_are_enough() {
     assert_eq!(scene.lamps, [0]);
     // The lamp's colour is the one shown as neutral, and the exposure is the lamp's own: the
     // photograph is shown as it is.
-    assert_eq!(exhibit.lamps[0].kelvin, scene.exposure.white);
+    assert_eq!(
+        exhibit.lamps[0].colour,
+        LampColour::Temperature(scene.exposure.white)
+    );
     assert_eq!(
         (scene.exposure.illuminance, scene.exposure.level),
         (None, 1.0)
@@ -193,8 +196,6 @@ fn what_is_not_shown_yet_is_named() {
     assert_eq!(
         read(FULL).not_shown_yet,
         [
-            "Lamp \"ring\": disc lamps are not shown yet.",
-            "Lamp \"studio\": lamps by a photometric file are not shown yet.",
             "Drawing \"landscape\": transmission is not shown yet.",
             "Drawing \"landscape\": media maps do not change the picture yet.",
             "Drawing \"landscape\": thickness_um of the paper does not change the picture yet.",
@@ -255,7 +256,10 @@ fn lamps_stand_where_their_angles_say() {
         position_mm.y < 0.0,
         "azimuth -90 is the bottom edge: {position_mm}"
     );
-    assert_eq!(exhibit.lamps[3].kelvin, Kelvin(3000.0));
+    assert_eq!(
+        exhibit.lamps[3].colour,
+        LampColour::Temperature(Kelvin(3000.0))
+    );
 }
 
 #[test]
@@ -407,19 +411,92 @@ fn a_new_exhibit_takes_no_other_picture_of_the_same_name_and_tells_its_warnings(
 }
 
 #[test]
-fn a_scene_lit_only_by_lamps_that_are_not_shown_is_a_warning() {
-    let ring = "[[lamp]]\nid = \"ring\"\nkind = \"disc\"\nnits = 1500\ndiameter_mm = 9\n\
-                position_mm = [0, 0, 500]\n";
-    let scene = format!("{SMALL}{ring}[[scene]]\nid = \"a\"\nlamps = [\"ring\"]\n");
-    let [warning] = &warnings(&scene)[..] else {
-        panic!()
+fn watts_are_lumens_by_their_efficacy() {
+    let place = "position_mm = [0, 0, 500]";
+    for kind in [
+        "kind = \"point\"",
+        "kind = \"spot\"\nhotspot_deg = 10\nfalloff_deg = 20",
+        "kind = \"rectangle\"\nsize_mm = [100, 50]",
+        "kind = \"disc\"\ndiameter_mm = 80",
+    ] {
+        let kinds = ["lumen = 3600", "watts = 40\nefficacy_lm_per_w = 90"].map(|strength| {
+            read(&format!(
+                "{SMALL}[[lamp]]\nid = \"lamp\"\n{kind}\n{place}\n{strength}\n"
+            ))
+            .lamps[0]
+                .kind
+                .clone()
+        });
+        assert_eq!(kinds[0], kinds[1]);
+    }
+}
+
+#[test]
+fn a_spectrum_gives_the_lamp_its_colour_by_name_table_or_file() {
+    let lamp = |spectrum: &str| {
+        format!(
+            "{SMALL}[[lamp]]\nid = \"lamp\"\nkind = \"point\"\nlumen = 100\n\
+             position_mm = [0, 0, 500]\nspectrum = {spectrum}\n"
+        )
     };
+    let xy = |exhibit: &Exhibit| match exhibit.lamps[0].colour {
+        LampColour::Chromaticity(xy) => xy,
+        LampColour::Temperature(_) => panic!("a spectrum replaces the temperature"),
+    };
+    let named = read(&lamp("\"LED-B3\""));
+    assert_eq!(xy(&named), [0.3756, 0.3723]);
+    let table = read(&lamp("{ wavelengths_nm = [360, 800], power = [2, 2] }"));
+    let folder = Folder::with(lamp("{ file = \"even.csv\" }"));
+    std::fs::write(folder.exhibit.join("even.csv"), "nm,W\n360,2\n800,2\n").unwrap();
+    let (file, _) = Exhibit::read(&folder.exhibit).unwrap();
+    assert_eq!(xy(&table), xy(&file));
+    assert!(xy(&table).iter().all(|v| (v - 1.0 / 3.0).abs() < 1e-3));
+    // D65 under the default white is as good as neutral.
+    let day = read(&lamp("\"D65\""));
+    let amount = day.lighting(&day.scenes[0]).lights[0].amount;
     assert!(
-        warning.contains("scene[0].lamps: found no light in this version"),
-        "{warning}"
+        (amount / amount.y - 1.0).abs().max_element() < 2e-3,
+        "{amount}"
     );
-    let with_ambient = format!("{scene}ambient = {{ lux = 100 }}\n");
-    assert_eq!(warnings(&with_ambient), [""; 0]);
+}
+
+#[test]
+fn a_spectrum_file_is_named_with_its_line() {
+    let text = format!(
+        "{SMALL}[[lamp]]\nid = \"lamp\"\nkind = \"point\"\nlumen = 100\n\
+         position_mm = [0, 0, 500]\nspectrum = {{ file = \"lamp.csv\" }}\n"
+    );
+    for (table, found) in [
+        (
+            "nm,W\n400,1\n500,one\n",
+            "\"lamp.csv\" (line 3 is not two numbers)",
+        ),
+        (
+            "400,1\n300,1\n",
+            "\"lamp.csv\" (a wavelength not above the one before it, at point 2)",
+        ),
+        ("", "\"lamp.csv\" (0 points)"),
+        (
+            "400,nan\n500,1\n",
+            "\"lamp.csv\" (no number from zero up, at point 1)",
+        ),
+    ] {
+        let folder = Folder::with(text.clone());
+        std::fs::write(folder.exhibit.join("lamp.csv"), table).unwrap();
+        let faults = Exhibit::read(&folder.exhibit).unwrap_err().to_string();
+        assert!(faults.contains(found), "{faults}");
+    }
+}
+
+#[test]
+fn a_photometric_file_is_the_lamps_intensity() {
+    let text = format!(
+        "{SMALL}[[lamp]]\nid = \"lamp\"\nkind = \"ies\"\nfile = \"lamp.ies\"\n\
+         position_mm = [0, 0, 2000]\n"
+    );
+    let exhibit = read(&text);
+    // 500 cd straight ahead, at two metres.
+    close(exhibit.lighting(&exhibit.scenes[0]).reference_lux, 125.0);
 }
 
 #[test]

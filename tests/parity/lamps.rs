@@ -12,9 +12,35 @@ struct LampCase {
 }
 
 impl LampCase {
-    /// Node and weight along both edges of a rectangle's sample in a rule of `grid` points.
-    fn rule(&self, grid: u32) -> [[f64; 2]; 2] {
+    /// Node and weight along both edges of a rectangle's sample, or a disc's ring and spoke.
+    fn rule(&self) -> [[f64; 2]; 2] {
+        let LightUniform { grid, rings, .. } = self.light;
+        if let Shape::Ies { photometry, .. } = &self.twin.shape {
+            let [gamma, c] = self.angles();
+            return [
+                [photometry.intensity(gamma, c) / photometry.peak(), 0.0],
+                [0.0; 2],
+            ];
+        }
+        if rings > 0 {
+            let ring = gauss_legendre(rings, self.sample / (4 * rings));
+            let ([x, y], _) = disc_rule(rings, self.sample);
+            let r = (0.5 + 0.5 * ring[0]).sqrt();
+            return [ring, [x / r, y / r]];
+        }
+        let grid = grid.max(1);
         [self.sample % grid, self.sample / grid].map(|i| gauss_legendre(grid, i))
+    }
+}
+
+impl LampCase {
+    /// γ and C of an IES lamp.
+    fn angles(&self) -> [f64; 2] {
+        let (light, p) = (&self.light, self.p.as_dvec3());
+        let l = p - light.place.as_dvec3();
+        let along = |axis: Vec3| axis.as_dvec3().dot(l);
+        let (u, v) = (along(light.half_edge_u), along(light.half_edge_v));
+        [u.hypot(v).atan2(along(light.axis) + 0.0), v.atan2(u)]
     }
 }
 
@@ -24,6 +50,8 @@ pub enum Lamps {
     Distant,
     Punctual,
     Rectangle,
+    Disc,
+    Ies,
 }
 
 impl Lamps {
@@ -32,6 +60,8 @@ impl Lamps {
             Self::Distant => "light_distant(x.light)",
             Self::Punctual => "light_punctual(x.light, x.p)",
             Self::Rectangle => "light_rectangle(x.light, x.p, x.u, x.v)",
+            Self::Ies => "light_ies(x.light, x.p, x.u.x)",
+            Self::Disc => "light_disc(x.light, x.p, x.u, x.v)",
         }
     }
 }
@@ -59,7 +89,30 @@ fn lamp(seeded: &Seeded, lamps: Lamps) -> Light {
                 axis,
                 half_u: half_u * seeded.log_or_zero(0.05, 5e3),
                 half_v: axis.cross(half_u) * seeded.log_or_zero(0.05, 5e3),
-                grid: GRIDS.start() + (seeded.bits() % 6) as u32,
+                grid: seeded.pick(&GRIDS.collect::<Vec<_>>()),
+            }
+        }
+        (Lamps::Ies, _) => {
+            let across_u = axis.any_orthonormal_vector();
+            let text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0\n1 1 9\n0 90 180\n\
+                        0 45 90\n9 5 2  9 3 4  9 1 8\n";
+            Shape::Ies {
+                position,
+                axis,
+                across_u,
+                across_v: axis.cross(across_u),
+                photometry: Arc::new(Photometry::parse(text).expect("a lamp")),
+            }
+        }
+        (Lamps::Disc, _) => {
+            let radius = seeded.log_or_zero(0.05, 5e3);
+            let half_u = axis.any_orthonormal_vector();
+            Shape::Disc {
+                centre: position,
+                axis,
+                half_u: half_u * radius,
+                half_v: axis.cross(half_u) * radius,
+                rings: seeded.pick(&GRIDS.collect::<Vec<_>>()),
             }
         }
         (Lamps::Distant, _) | (_, 0) => Shape::Distant { towards: -axis },
@@ -107,7 +160,22 @@ fn lamp_cases(lamps: Lamps) -> Vec<LampCase> {
                     half_v: wide(narrow.half_edge_v),
                     grid,
                 },
+                Shape::Ies { ref photometry, .. } => Shape::Ies {
+                    position: wide(narrow.place),
+                    axis: wide(narrow.axis),
+                    across_u: wide(narrow.half_edge_u),
+                    across_v: wide(narrow.half_edge_v),
+                    photometry: Arc::clone(photometry),
+                },
+                Shape::Disc { rings, .. } => Shape::Disc {
+                    centre: wide(narrow.place),
+                    axis: wide(narrow.axis),
+                    half_u: wide(narrow.half_edge_u),
+                    half_v: wide(narrow.half_edge_v),
+                    rings,
+                },
             };
+            let samples = narrow.grid * narrow.grid + 4 * narrow.rings * narrow.rings;
             // Inside the lamp, at its very place, as well as anywhere.
             let p = seeded.pick(&[p.as_vec3(), p.as_vec3(), narrow.place, Vec3::ZERO]);
             LampCase {
@@ -117,7 +185,7 @@ fn lamp_cases(lamps: Lamps) -> Vec<LampCase> {
                     amount: wide(narrow.amount),
                 },
                 p,
-                sample: (seeded.bits() % u64::from(narrow.grid * narrow.grid).max(1)) as u32,
+                sample: (seeded.bits() % u64::from(samples.max(1))) as u32,
             }
         })
         .collect()
@@ -129,7 +197,9 @@ fn lamp_rounding(case: &LampCase, twin: &Incidence) -> (f64, f64) {
     // Unshaped light: what the beam, or the lamp's own cosine, is a share of.
     let (towards, places, share, steepness) = match case.twin.shape {
         Shape::Distant { towards } => (towards, DVec3::ZERO, 1.0, 0.0),
-        Shape::Point { position } => (position - wide(case.p), DVec3::ZERO, 1.0, 0.0),
+        Shape::Point { position } | Shape::Ies { position, .. } => {
+            (position - wide(case.p), DVec3::ZERO, 1.0, 0.0)
+        }
         Shape::Spot { position, .. } => {
             let steepness = f64::from(case.light.beam_scale);
             (position - wide(case.p), DVec3::ZERO, 1.0, steepness)
@@ -138,18 +208,29 @@ fn lamp_rounding(case: &LampCase, twin: &Incidence) -> (f64, f64) {
             centre,
             half_u,
             half_v,
-            grid,
             ..
         } => {
-            let [[u, weight_u], [v, weight_v]] = case.rule(grid);
+            let [[u, weight_u], [v, weight_v]] = case.rule();
             let towards = centre + half_u * u + half_v * v - wide(case.p);
             let share = weight_u * weight_v;
             let places = centre.abs() + half_u.abs() + half_v.abs() + wide(case.p).abs();
             (towards, places, share, 1.0)
         }
+        Shape::Disc {
+            centre,
+            half_u,
+            half_v,
+            rings,
+            ..
+        } => {
+            let ([x, y], share) = disc_rule(rings, case.sample);
+            let towards = centre + half_u * x + half_v * y - wide(case.p);
+            let places = centre.abs() + half_u.abs() + half_v.abs() + wide(case.p).abs();
+            (towards, places, share, 1.0)
+        }
     };
     let distance2 = towards.length_squared().max(1e-12);
-    // Only a rectangle's place is a sum of more than two: its rounding turns the direction.
+    // Only an area's place is a sum of more than two: its rounding turns the direction.
     let turned = UNIT_PRODUCT * places.length() / distance2.sqrt();
     let unshaped = case.twin.amount.max_element() * share
         / distance2.max(f64::from(case.light.distance_squared_min));
@@ -167,12 +248,7 @@ pub fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, Stri
             words.extend(case.p.to_array());
             // A vector of two begins at a multiple of eight bytes.
             words.push(0.0);
-            words.extend(
-                case.rule(case.light.grid.max(*GRIDS.start()))
-                    .concat()
-                    .iter()
-                    .map(|v| *v as f32),
-            );
+            words.extend(case.rule().concat().iter().map(|v| *v as f32));
             words
         })
         .collect();
@@ -221,7 +297,59 @@ pub fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, Stri
 #[test]
 fn lamps() {
     let gpu = Gpu::new();
-    for lamps in [Lamps::Distant, Lamps::Punctual, Lamps::Rectangle] {
+    for lamps in [
+        Lamps::Distant,
+        Lamps::Punctual,
+        Lamps::Rectangle,
+        Lamps::Disc,
+        Lamps::Ies,
+    ] {
         compare_lamps(&gpu, PAPER_BSDF, lamps).unwrap();
     }
+}
+
+/// What an angle of an IES lamp may be off, in radians: a hundredth of the quarter degree in which
+/// the narrowest beams lose a tenth of their peak.
+const ANGLE: f64 = 2e-5;
+
+#[test]
+fn angles_of_ies_lamps() {
+    let gpu = Gpu::new();
+    let cases = lamp_cases(Lamps::Ies);
+    let given: Vec<f32> = cases
+        .iter()
+        .flat_map(|case| {
+            let mut words = words(&case.light);
+            words.extend(case.p.to_array());
+            words.push(0.0);
+            words
+        })
+        .collect();
+    let body = "let x = given[index]; let angles = ies_angles(x.light, x.p);
+        found[to] = angles.x; found[to + 1u] = angles.y;";
+    let text = format!(
+        "{PAPER_BSDF}\nstruct Case {{ light: Light, p: vec3<f32> }}\n{}",
+        entry("Case", cases.len(), 2, body)
+    );
+    let found = gpu.run(&text, &given, cases.len(), 2);
+    let mut worst = [0.0f64; 2];
+    for (case, found) in cases.iter().zip(found.chunks(2)) {
+        assert!(
+            found.iter().all(|angle| angle.is_finite() && *angle >= 0.0),
+            "{found:?}"
+        );
+        let l = (case.p - case.light.place).as_dvec3();
+        // At the lamp's own place there is no direction.
+        if l.length() < 1e-3 {
+            continue;
+        }
+        let [gamma, c] = case.angles();
+        worst[0] = worst[0].max((f64::from(found[0]) - gamma).abs());
+        // On the axis every azimuth is as good: judge the arc.
+        let turn = 2.0 * PI;
+        let apart = (f64::from(found[1]) - c).rem_euclid(turn);
+        worst[1] = worst[1].max(apart.min(turn - apart) * gamma.sin());
+    }
+    eprintln!("angles of IES lamps: {worst:?} rad off");
+    assert!(worst.iter().all(|angle| *angle < ANGLE), "{worst:?}");
 }

@@ -2,15 +2,17 @@
 
 use super::{
     super::{
-        decode::{OfKind, Rule},
+        decode::{Brief, List, OfKind, Rule},
         macros::{kinds, record},
     },
     RawWording,
     values::{
-        ConeDeg, DistanceMm, ElevationDeg, FilePath, Id, LampCandela, LampLumen, LampLux, LampMm,
-        LampNits, PositionMm, Temperature, TurnDeg,
+        ConeDeg, DistanceMm, ElevationDeg, FilePath, Id, LampCandela, LampEfficacy, LampLumen,
+        LampLux, LampMm, LampNits, LampWatts, PositionMm, SpectralPower, Temperature, TurnDeg,
+        WavelengthNm,
     },
 };
+use crate::optics::spectrum::{Illuminant, MAX_POINTS};
 
 /// A light source.
 pub type RawLamp = OfKind<RawLampCommon, RawLampKind>;
@@ -27,8 +29,31 @@ record! {
             title: RawWording,
             /// Its colour temperature in K. Without it: 6504, which is daylight.
             kelvin: Temperature,
+            /// Instead of kelvin: its spectral power, as the name of an illuminant of the CIE or
+            /// as a table. Its colour is computed from it.
+            spectrum: Brief<Illuminant, RawSpectrum>,
         }
-        rules []
+        rules [Rule::AtMostOne(&["kelvin", "spectrum"])]
+    }
+}
+
+record! {
+    /// The spectral power of a lamp, linear between the points that are given and none outside.
+    pub struct RawSpectrum {
+        required {}
+        optional {
+            /// Rising wavelengths in nm.
+            wavelengths_nm: List<WavelengthNm, 2, MAX_POINTS>,
+            /// With wavelengths_nm: the power at each, in any unit per nm.
+            power: List<SpectralPower, 2, MAX_POINTS>,
+            /// A text file of two columns, wavelength in nm and power, instead.
+            file: FilePath,
+        }
+        rules [
+            Rule::ExactlyOne(&["wavelengths_nm", "file"]),
+            Rule::Needs("wavelengths_nm", "power"),
+            Rule::Needs("power", "wavelengths_nm"),
+        ]
     }
 }
 
@@ -140,8 +165,17 @@ standing_lamp! {
             candela: LampCandela,
             /// Its whole light in lm.
             lumen: LampLumen,
+            /// The electric power that it takes, in W; its light follows by efficacy_lm_per_w.
+            watts: LampWatts,
+            /// With watts: the light that it gives for each watt, in lm/W, as its maker states:
+            /// about 15 for halogen, 80 to 150 for LED. 683 is the most there can be.
+            efficacy_lm_per_w: LampEfficacy,
         }
-        rules [Rule::ExactlyOne(&["lux_at_sheet", "candela", "lumen"])]
+        rules [
+            Rule::ExactlyOne(&["lux_at_sheet", "candela", "lumen", "watts"]),
+            Rule::Needs("watts", "efficacy_lm_per_w"),
+            Rule::Needs("efficacy_lm_per_w", "watts"),
+        ]
     }
 }
 
@@ -161,11 +195,20 @@ standing_lamp! {
             candela: LampCandela,
             /// Its whole light in lm.
             lumen: LampLumen,
+            /// The electric power that it takes, in W; its light follows by efficacy_lm_per_w.
+            watts: LampWatts,
+            /// With watts: the light that it gives for each watt, in lm/W, as its maker states:
+            /// about 15 for halogen, 80 to 150 for LED. 683 is the most there can be.
+            efficacy_lm_per_w: LampEfficacy,
             /// What it shines at, in mm from the centre of the sheet: right, up, towards the
             /// viewer. Without it: the centre.
             aim_mm: [PositionMm; 3],
         }
-        rules [Rule::ExactlyOne(&["lux_at_sheet", "candela", "lumen"])]
+        rules [
+            Rule::ExactlyOne(&["lux_at_sheet", "candela", "lumen", "watts"]),
+            Rule::Needs("watts", "efficacy_lm_per_w"),
+            Rule::Needs("efficacy_lm_per_w", "watts"),
+        ]
     }
 }
 
@@ -183,11 +226,20 @@ standing_lamp! {
             nits: LampNits,
             /// Its whole light in lm.
             lumen: LampLumen,
+            /// The electric power that it takes, in W; its light follows by efficacy_lm_per_w.
+            watts: LampWatts,
+            /// With watts: the light that it gives for each watt, in lm/W, as its maker states:
+            /// about 15 for halogen, 80 to 150 for LED. 683 is the most there can be.
+            efficacy_lm_per_w: LampEfficacy,
             /// What it faces, in mm from the centre of the sheet: right, up, towards the viewer.
             /// Without it: the centre.
             aim_mm: [PositionMm; 3],
         }
-        rules [Rule::ExactlyOne(&["lux_at_sheet", "nits", "lumen"])]
+        rules [
+            Rule::ExactlyOne(&["lux_at_sheet", "nits", "lumen", "watts"]),
+            Rule::Needs("watts", "efficacy_lm_per_w"),
+            Rule::Needs("efficacy_lm_per_w", "watts"),
+        ]
     }
 }
 
@@ -205,11 +257,20 @@ standing_lamp! {
             nits: LampNits,
             /// Its whole light in lm.
             lumen: LampLumen,
+            /// The electric power that it takes, in W; its light follows by efficacy_lm_per_w.
+            watts: LampWatts,
+            /// With watts: the light that it gives for each watt, in lm/W, as its maker states:
+            /// about 15 for halogen, 80 to 150 for LED. 683 is the most there can be.
+            efficacy_lm_per_w: LampEfficacy,
             /// What it faces, in mm from the centre of the sheet: right, up, towards the viewer.
             /// Without it: the centre.
             aim_mm: [PositionMm; 3],
         }
-        rules [Rule::ExactlyOne(&["lux_at_sheet", "nits", "lumen"])]
+        rules [
+            Rule::ExactlyOne(&["lux_at_sheet", "nits", "lumen", "watts"]),
+            Rule::Needs("watts", "efficacy_lm_per_w"),
+            Rule::Needs("efficacy_lm_per_w", "watts"),
+        ]
     }
 }
 

@@ -13,6 +13,7 @@ use super::super::{
 use crate::{
     maps::{ColourEncoding, ColourMapName, NormalY},
     optics::medium::{MediumId, MediumKind},
+    optics::spectrum::Illuminant,
 };
 
 number! {
@@ -54,8 +55,16 @@ number! {
     LampCandela = 0.000001 ..= 1000000000.0, "cd";
     /// A luminous flux.
     LampLumen = 0.000001 ..= 1000000000.0, "lm";
+    /// An electric power.
+    LampWatts = 0.000001 ..= 1000000.0, "W";
+    /// A luminous efficacy; 683 lm/W is that of green light of 555 nm (CIE 018:2019).
+    LampEfficacy = 0.001 ..= 683.0, "lm/W";
     /// A luminance.
     LampNits = 0.000001 ..= 1000000000.0, "cd/m²";
+    /// A wavelength of light.
+    WavelengthNm = 10.0 ..= 100000.0, "nm";
+    /// A spectral power in any unit.
+    SpectralPower = 0.0 ..= 1000000000.0, "";
     /// A correlated colour temperature.
     Temperature = 1000.0 ..= 25000.0, "K";
     /// An angle above the plane of the sheet.
@@ -126,6 +135,36 @@ choice! {
         Flicker = "flicker",
     }
     ColourEncoding { Embedded = "embedded", Srgb = "srgb", Linear = "linear", }
+    Illuminant {
+        A = "A",
+        C = "C",
+        D50 = "D50",
+        D55 = "D55",
+        D65 = "D65",
+        D75 = "D75",
+        E = "E",
+        F1 = "F1",
+        F2 = "F2",
+        F3 = "F3",
+        F4 = "F4",
+        F5 = "F5",
+        F6 = "F6",
+        F7 = "F7",
+        F8 = "F8",
+        F9 = "F9",
+        F10 = "F10",
+        F11 = "F11",
+        F12 = "F12",
+        LedB1 = "LED-B1",
+        LedB2 = "LED-B2",
+        LedB3 = "LED-B3",
+        LedB4 = "LED-B4",
+        LedB5 = "LED-B5",
+        LedBh1 = "LED-BH1",
+        LedRgb1 = "LED-RGB1",
+        LedV1 = "LED-V1",
+        LedV2 = "LED-V2",
+    }
     NormalY { Up = "up", Down = "down", }
     ColourMapName { Viridis = "viridis", Magma = "magma", Cividis = "cividis", Grey = "grey", }
 }

@@ -12,8 +12,11 @@ use super::super::{
     fault::{did_you_mean, quote},
     raw::values::FilePath,
 };
-use super::Validator;
-use crate::maps::{self, Header, MAX_SIDE, MapError};
+use super::{Validator, lamp::spectrum_words};
+use crate::{
+    maps::{self, Header, MAX_SIDE, MapError},
+    optics::{photometry::Photometry, spectrum},
+};
 
 impl Validator<'_, '_> {
     /// The path of a file of the exhibit, named at `trail`.
@@ -93,14 +96,34 @@ impl Validator<'_, '_> {
         }
     }
 
-    /// A photometric file of the exhibit, named at `trail`.
-    pub(super) fn photometry(&mut self, file: &FilePath, trail: &Trail) -> Option<PathBuf> {
+    /// The chromaticity of a table of spectral power of the exhibit, named at `trail`.
+    pub(super) fn spectrum_file(&mut self, file: &FilePath, trail: &Trail) -> Option<[f64; 2]> {
         let path = self.file(file, trail)?;
-        match check_ies(&path) {
-            Ok(()) => Some(path),
+        let xy = small_text(&path).and_then(|text| {
+            let [wavelengths, power] = spectrum::two_columns(&text)
+                .map_err(|line| format!("line {line} is not two numbers"))?;
+            spectrum::chromaticity(&wavelengths, &power).map_err(|error| error.to_string())
+        });
+        match xy {
+            Ok(xy) => Some(xy),
             Err(reason) => {
                 let found = format!("{} ({reason})", quote(file.as_str()));
-                let allowed = "a photometric file, IES LM-63";
+                self.report.fault(trail, spectrum_words(found));
+                None
+            }
+        }
+    }
+
+    /// A photometric file of the exhibit, named at `trail`.
+    pub(super) fn photometry(&mut self, file: &FilePath, trail: &Trail) -> Option<Photometry> {
+        let path = self.file(file, trail)?;
+        let lamp = small_text(&path)
+            .and_then(|text| Photometry::parse(&text).map_err(|error| error.to_string()));
+        match lamp {
+            Ok(lamp) => Some(lamp),
+            Err(reason) => {
+                let found = format!("{} ({reason})", quote(file.as_str()));
+                let allowed = "a photometric file, IES LM-63, of type C and with TILT=NONE";
                 self.report
                     .fault(trail, Words::new(found, allowed, "export it again"));
                 None
@@ -109,15 +132,18 @@ impl Validator<'_, '_> {
     }
 }
 
-/// Every edition of LM-63 since 1991 begins with its name.
-fn check_ies(path: &Path) -> Result<(), String> {
-    let mut start = [0; 5];
-    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
-    match read {
-        Ok(()) if start == *b"IESNA" || start == *b"IES:L" => Ok(()),
-        Ok(()) => Err("it does not begin with IESNA".to_owned()),
-        Err(error) => Err(error.to_string()),
+/// The text of a file that is a table, and no film under the wrong name. Older programs write
+/// other encodings than UTF-8; what is not ASCII in such files is somebody's name.
+fn small_text(path: &Path) -> Result<String, String> {
+    const MOST_BYTES: u64 = 4 << 20;
+    let mut bytes = Vec::new();
+    fs::File::open(path)
+        .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
+        .map_err(|error| error.to_string())?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err("more than 4 MiB".to_owned());
     }
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// Whether a relative path climbs above where it starts, even if it comes back.

@@ -1,22 +1,26 @@
 //! Lamps: places from angles, and every photometric unit into the one that is calculated with.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::{
     super::{
-        decode::{List, Pattern},
+        decode::{Brief, List, Pattern},
         document::{Trail, Words},
-        exhibit::{Lamp, LampKind, Wording},
+        exhibit::{Lamp, LampColour, LampKind, Wording},
         raw::{
             RawManifest,
-            lamp::{RawLamp, RawLampKind, Stand},
-            values::{LampCandela, LampLumen, LampLux, LampNits, PositionMm},
+            lamp::{RawLamp, RawLampCommon, RawLampKind, RawSpectrum, Stand},
+            values::{
+                LampCandela, LampEfficacy, LampLumen, LampLux, LampNits, LampWatts, PositionMm,
+            },
         },
     },
     Validator,
 };
 use crate::{
-    optics::{lamp::DISTANCE2_MIN_MM2, lamp_units},
+    optics::{lamp::DISTANCE2_MIN_MM2, lamp_units, spectrum},
     units::{Candela, Degrees, Kelvin, Lux, Nits},
 };
 
@@ -30,6 +34,13 @@ const DEFAULT_DISTANCE_MM: f64 = 600.0;
 /// How near to the plane of the sheet a lamp can be.
 const LOWEST_MM: f64 = 1.0;
 
+/// The luminous flux that a lamp is given, in lm or as watts times efficacy.
+macro_rules! flux {
+    ($lamp:expr) => {
+        flux($lamp.lumen, $lamp.watts, $lamp.efficacy_lm_per_w)
+    };
+}
+
 impl Validator<'_, '_> {
     /// The lamps of the manifest, or the reference lamp: distant, 1000 lx, from the top left at
     /// 45°, in the light that is shown as neutral, so that a photograph looks as it is.
@@ -38,7 +49,7 @@ impl Validator<'_, '_> {
             return Some(vec![Lamp {
                 id: DEFAULT_ID.to_owned(),
                 title: Wording::default(),
-                kelvin: Kelvin(DAYLIGHT_K),
+                colour: LampColour::Temperature(Kelvin(DAYLIGHT_K)),
                 kind: LampKind::Distant {
                     illuminance: Lux(1000.0),
                     elevation: Degrees(45.0),
@@ -56,26 +67,45 @@ impl Validator<'_, '_> {
     pub(super) fn lamp(&mut self, raw: &RawLamp, trail: &Trail) -> Option<Lamp> {
         let id = raw.common.id.as_str().to_owned();
         let title = self.wording(raw.common.title.as_ref(), &trail.key("title"));
-        let kelvin = Kelvin(raw.common.kelvin.map_or(DAYLIGHT_K, |kelvin| kelvin.0));
+        let colour = self.lamp_colour(&raw.common, trail);
         let kind = self.lamp_kind(raw, trail)?;
-        let unseen = match kind {
-            LampKind::Disc { .. } => Some("disc lamps are"),
-            LampKind::Ies { .. } => Some("lamps by a photometric file are"),
-            LampKind::Distant { .. }
-            | LampKind::Point { .. }
-            | LampKind::Spot { .. }
-            | LampKind::Rectangle { .. }
-            | LampKind::LightTable { .. } => None,
-        };
-        if let Some(unseen) = unseen {
-            self.not_shown_yet(format!("Lamp \"{id}\": {unseen} not shown yet."));
-        }
         Some(Lamp {
             id,
             title,
-            kelvin,
+            colour: colour?,
             kind,
         })
+    }
+
+    fn lamp_colour(&mut self, raw: &RawLampCommon, trail: &Trail) -> Option<LampColour> {
+        let trail = trail.key("spectrum");
+        let xy = match &raw.spectrum {
+            None => {
+                let kelvin = raw.kelvin.map_or(DAYLIGHT_K, |kelvin| kelvin.0);
+                return Some(LampColour::Temperature(Kelvin(kelvin)));
+            }
+            Some(Brief::Short(illuminant)) => illuminant.xy(),
+            Some(Brief::Full(RawSpectrum {
+                file: Some(file), ..
+            })) => self.spectrum_file(file, &trail.key("file"))?,
+            Some(Brief::Full(raw)) => {
+                let wavelengths: Vec<f64> = raw
+                    .wavelengths_nm
+                    .as_ref()?
+                    .iter()
+                    .map(|(_, nm)| nm.0)
+                    .collect();
+                let power: Vec<f64> = raw.power.as_ref()?.iter().map(|(_, p)| p.0).collect();
+                match spectrum::chromaticity(&wavelengths, &power) {
+                    Ok(xy) => xy,
+                    Err(error) => {
+                        self.report.fault(&trail, spectrum_words(error.to_string()));
+                        return None;
+                    }
+                }
+            }
+        };
+        Some(LampColour::Chromaticity(xy))
     }
 
     fn lamp_kind(&mut self, raw: &RawLamp, trail: &Trail) -> Option<LampKind> {
@@ -88,7 +118,7 @@ impl Validator<'_, '_> {
             RawLampKind::Point(lamp) => {
                 let position_mm = self.stand(&lamp.stand(), trail)?;
                 let intensity = intensity(
-                    (lamp.lux_at_sheet, lamp.candela, lamp.lumen),
+                    (lamp.lux_at_sheet, lamp.candela, flux!(lamp)),
                     position_mm,
                     lamp_units::point_intensity,
                 )?;
@@ -124,7 +154,7 @@ impl Validator<'_, '_> {
                     (
                         lamp.lux_at_sheet.map(|lux| LampLux(lux.0 / share)),
                         lamp.candela,
-                        lamp.lumen,
+                        flux!(lamp),
                     ),
                     position_mm,
                     |lumen| lamp_units::spot_intensity(lumen, cos_hotspot, cos_falloff),
@@ -142,7 +172,7 @@ impl Validator<'_, '_> {
                 let position_mm = self.stand(&lamp.stand(), trail)?;
                 let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
                 let form = lamp_units::rectangle_form(position_mm, aim_mm, size_mm, DVec3::ZERO);
-                let light = (lamp.lux_at_sheet, lamp.nits, lamp.lumen);
+                let light = (lamp.lux_at_sheet, lamp.nits, flux!(lamp));
                 let luminance = self.luminance(light, form, size_mm.x * size_mm.y, trail)?;
                 Some(LampKind::Rectangle {
                     luminance,
@@ -157,7 +187,7 @@ impl Validator<'_, '_> {
                 let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
                 let form = lamp_units::disc_form(position_mm, aim_mm, diameter_mm, DVec3::ZERO);
                 let area = std::f64::consts::PI * diameter_mm * diameter_mm / 4.0;
-                let light = (lamp.lux_at_sheet, lamp.nits, lamp.lumen);
+                let light = (lamp.lux_at_sheet, lamp.nits, flux!(lamp));
                 let luminance = self.luminance(light, form, area, trail)?;
                 Some(LampKind::Disc {
                     luminance,
@@ -167,11 +197,11 @@ impl Validator<'_, '_> {
                 })
             }
             RawLampKind::Ies(lamp) => {
-                let path = self.photometry(&lamp.file, &trail.key("file"));
+                let photometry = self.photometry(&lamp.file, &trail.key("file"));
                 let position_mm = self.stand(&lamp.stand(), trail)?;
                 let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
                 Some(LampKind::Ies {
-                    path: path?,
+                    photometry: Arc::new(photometry?),
                     position_mm,
                     aim_mm,
                 })
@@ -250,6 +280,25 @@ impl Validator<'_, '_> {
         );
         self.report.fault(&trail.key("lux_at_sheet"), words);
     }
+}
+
+/// What is wrong with a table of spectral power.
+pub(super) fn spectrum_words(found: String) -> Words {
+    let allowed = "rising wavelengths in nm, each with a power from zero up, some of it visible";
+    Words::new(
+        found,
+        allowed,
+        "correct the table, or name an illuminant such as \"LED-B3\"",
+    )
+}
+
+/// Φ = P·η where a lamp has watts, otherwise the flux that is given.
+fn flux(
+    lumen: Option<LampLumen>,
+    watts: Option<LampWatts>,
+    efficacy: Option<LampEfficacy>,
+) -> Option<LampLumen> {
+    lumen.or_else(|| Some(LampLumen(watts?.0 * efficacy?.0)))
 }
 
 /// The intensity of a small lamp in cd from the one unit that is given.

@@ -101,13 +101,7 @@ impl Validator<'_, '_> {
             .iter()
             .map(|(i, raw)| self.drawing(raw, &drawings_trail.index(i), &scene_names))
             .collect();
-        let scenes = self.scenes(
-            raw,
-            &root,
-            &drawing_names,
-            (&lamp_names, lamps.as_deref()),
-            &scene_names,
-        );
+        let scenes = self.scenes(raw, &root, &drawing_names, &lamp_names, &scene_names);
         let tours = self.tours(raw, &root.key("tour"), &scene_names);
         let accuracy = raw.accuracy.as_ref();
         Some(Exhibit {

@@ -7,7 +7,7 @@ use super::{
         decode::{Brief, List, Pattern},
         document::{Trail, Words},
         exhibit::{
-            Ambient, Camera, CompareMode, Comparison, Exposure, Lamp, Member, Scene, SideName, Tour,
+            Ambient, Camera, CompareMode, Comparison, Exposure, Member, Scene, SideName, Tour,
         },
         raw::{
             RawManifest,
@@ -33,8 +33,6 @@ struct Surroundings<'n> {
     drawings: Vec<(usize, DrawingFacts)>,
     drawing_names: &'n Names,
     lamp_names: &'n Names,
-    /// `None` where some are at fault.
-    lamps: Option<&'n [Lamp]>,
     exposure: Option<&'n RawExposure>,
 }
 
@@ -44,7 +42,7 @@ impl Validator<'_, '_> {
         raw: &RawManifest,
         root: &Trail,
         drawing_names: &Names,
-        (lamp_names, lamps): (&Names, Option<&[Lamp]>),
+        lamp_names: &Names,
         scene_names: &Names,
     ) -> Option<Vec<Scene>> {
         let surroundings = Surroundings {
@@ -55,7 +53,6 @@ impl Validator<'_, '_> {
                 .collect(),
             drawing_names,
             lamp_names,
-            lamps,
             exposure: raw
                 .exhibit
                 .as_ref()
@@ -178,18 +175,6 @@ impl Validator<'_, '_> {
                 "name a lamp or set ambient.lux",
             );
             self.report.fault(&trail.key("lamps"), words);
-        }
-        if let (Some(indices), Some(all)) = (&lamps, around.lamps)
-            && !indices.is_empty()
-            && ambient.illuminance.0 == 0.0
-            && indices.iter().all(|index| !all[*index].kind.is_shown())
-        {
-            let words = Words::new(
-                "no light in this version, which does not show lamps of these kinds yet",
-                "a lamp of the kinds distant, point, spot, rectangle and light-table, or ambient light",
-                "add such a lamp or set ambient.lux",
-            );
-            self.report.warn(&trail.key("lamps"), words);
         }
         let drawing = self.scene_drawing(raw, trail, around)?;
         let position = around
