@@ -7,6 +7,7 @@
     Facing, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Surface,
     albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing, fit_powers, interface_at,
     interface_mean_at, interface_row, light_distant, light_punctual, light_rectangle,
+    mean_length, widened,
 }
 
 // Largest value a half-float target holds.
@@ -48,6 +49,8 @@ struct Paper {
     outline_place: MapPlace,
     // Linear level at which a window shows a perfect diffuser (x); the rest is unused.
     level: vec4<f32>,
+    // Scale and offset of the stored z of a normal map (xy).
+    normal_out: vec4<f32>,
     interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,
@@ -179,14 +182,23 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
     var n = vec3(0.0, 0.0, 1.0);
 #ifdef NORMAL_MAP
-    let slope = textureSample(normal_map, map_sampler, map_uv(paper.normal_place, in)).xy;
-    let bent = paper.normal_axes.xy * slope.x + paper.normal_axes.zw * slope.y + paper.normal_offset;
-    n = vec3(bent, sqrt(max(1.0 - dot(bent, bent), 1e-4)));
+    let stored = textureSample(normal_map, map_sampler, map_uv(paper.normal_place, in)).xyz;
+    n = vec3(
+        paper.normal_axes.xy * stored.x + paper.normal_axes.zw * stored.y + paper.normal_offset,
+        paper.normal_out.x * stored.z + paper.normal_out.y,
+    );
+    // What the spread of the normals under the pixel takes from its diffuse light and adds to
+    // its roughness.
+    let shortening = mean_length(n);
+    n = normalize(n);
 #endif
     var alpha = paper.alpha;
 #ifdef ROUGHNESS_MAP
     alpha = textureSample(roughness_map, map_sampler, map_uv(paper.roughness_place, in)).x;
     alpha = clamp(alpha, ALPHA_MIN, 1.0);
+#endif
+#ifdef NORMAL_MAP
+    alpha = widened(alpha, shortening);
 #endif
     var coverage = 1.0;
 #ifdef OUTLINE
@@ -261,14 +273,21 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
     let s = Surface(albedo, alpha, paper.eta, paper.f_normal, paper.specular);
 #ifdef TIER_GALLERY
+    var powers = vec4(1.0, 0.0, 0.0, 0.0);
 #ifdef ROUGHNESS_MAP
-    let powers = fit_powers(alpha);
-#else
-    let powers = vec4(1.0, 0.0, 0.0, 0.0);
+    powers = fit_powers(alpha);
+#endif
+#ifdef NORMAL_MAP
+    powers = fit_powers(alpha);
 #endif
     let row = interface_row(paper.interface_table, powers);
     let mean = interface_mean_at(paper.interface_table, powers);
     let at_o = interface_at(row, max(dot(n, v), MU_MIN));
+#endif
+    // The surface under directed light: its mean normal is `shortening` times the unit one.
+    var lit = s;
+#ifdef NORMAL_MAP
+    lit.albedo *= shortening;
 #endif
     var radiance = vec3(0.0);
 #ifdef ONE_LAMP
@@ -302,13 +321,18 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
             let mu_i = dot(n, incidence.l);
             if mu_i > 0.0 && dot(geometric, incidence.l) > 0.0 {
 #ifdef TIER_LAMBERT
-                let f = brdf_lambert(s);
+                let f = brdf_lambert(lit);
 #endif
 #ifdef TIER_DRAFT
-                let f = brdf_draft(s, facing(n, incidence.l, v));
+                let f = brdf_draft(lit, facing(n, incidence.l, v));
 #endif
 #ifdef TIER_GALLERY
-                let f = brdf_gallery(s, facing(n, incidence.l, v), interface_at(row, mu_i), at_o, mean);
+                var at_i = interface_at(row, mu_i);
+#ifdef NORMAL_MAP
+                // Before the albedo's bounds, as they belong to the paper and not to its relief.
+                at_i.t *= shortening;
+#endif
+                let f = brdf_gallery(s, facing(n, incidence.l, v), at_i, at_o, mean);
 #endif
                 radiance += f * incidence.e * mu_i;
             }

@@ -32,6 +32,8 @@ mod gpu;
 mod interfaces;
 #[path = "parity/lamps.rs"]
 mod lamps;
+#[path = "parity/relief.rs"]
+mod relief;
 
 use gpu::{Gpu, entry};
 use lamps::{Lamps, compare_lamps};

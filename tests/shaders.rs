@@ -333,6 +333,7 @@ impl Sentinel {
             roughness_place: self.map_place().0,
             outline_place: self.map_place().0,
             level: self.vec4(),
+            normal_out: self.vec4(),
             interface_table: self.interface().0,
             lights: std::array::from_fn::<_, MAX_LAMPS, _>(|_| self.light().0),
             overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),

@@ -19,5 +19,6 @@ pub mod lamp_units;
 pub mod medium;
 pub mod microfacet;
 pub mod quadrature;
+pub mod relief;
 pub mod table;
 pub mod tier;

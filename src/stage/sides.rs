@@ -189,7 +189,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, codings: &[Coding]) -> PaperUn
         ..PaperUniform::default()
     };
     if side.terms.tier == Tier::Gallery {
-        let table = if side.terms.roughness_map {
+        let table = if side.terms.roughness_map || side.terms.normal_map {
             InterfaceTable::new(paper.index, paper.specular)
         } else {
             InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular)
