@@ -558,3 +558,21 @@ fn light_ies(light: Light, p: vec3<f32>, share: f32) -> Incidence {
     let l = towards / max(sqrt(distance_squared), LENGTH_MIN);
     return Incidence(l, light.amount * (share / max(distance_squared, light.distance_squared_min)));
 }
+
+// Twins of src/optics/relief.rs
+
+const MEAN_LENGTH_MIN: f32 = 0.1;
+const SHORTENING_NOISE: f32 = 1e-4;
+
+fn mean_length(mean: vec3<f32>) -> f32 {
+    return sqrt(clamp(dot(mean, mean), MEAN_LENGTH_MIN * MEAN_LENGTH_MIN, 1.0));
+}
+
+fn slope_variance(length: f32) -> f32 {
+    let l_2 = length * length;
+    return max(1.0 - l_2 - SHORTENING_NOISE, 0.0) / l_2;
+}
+
+fn widened(alpha: f32, length: f32) -> f32 {
+    return clamp(sqrt(alpha * alpha + slope_variance(length)), ALPHA_MIN, 1.0);
+}

@@ -10,7 +10,7 @@
     diffuse_share, facing, fit_powers, inner_cosine, interface_at, interface_mean_at,
     ies_angles, interface_row, internal_reflectance, light_disc, light_distant, light_ies,
     light_punctual, light_rectangle,
-    optical_depth, particle_shares, through_study,
+    mean_length, optical_depth, particle_shares, through_study, widened,
 }
 
 #ifdef TIER_ISLE
@@ -83,6 +83,8 @@ struct Paper {
     // Radiance of the light table behind the sheet, where a perfect diffuser at the reference
     // illuminance shows 1.
     light_table: vec3<f32>,
+    // Scale and offset of the stored z of a normal map (xy).
+    normal_out: vec4<f32>,
     interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,
@@ -263,14 +265,23 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
     var n = vec3(0.0, 0.0, 1.0);
 #ifdef NORMAL_MAP
-    let slope = textureSample(normal_map, map_sampler, map_uv(paper.normal_place, in)).xy;
-    let bent = paper.normal_axes.xy * slope.x + paper.normal_axes.zw * slope.y + paper.normal_offset;
-    n = vec3(bent, sqrt(max(1.0 - dot(bent, bent), 1e-4)));
+    let stored = textureSample(normal_map, map_sampler, map_uv(paper.normal_place, in)).xyz;
+    n = vec3(
+        paper.normal_axes.xy * stored.x + paper.normal_axes.zw * stored.y + paper.normal_offset,
+        paper.normal_out.x * stored.z + paper.normal_out.y,
+    );
+    // What the spread of the normals under the pixel takes from its diffuse light and adds to
+    // its roughness.
+    let shortening = mean_length(n);
+    n = normalize(n);
 #endif
     var alpha = paper.alpha;
 #ifdef ROUGHNESS_MAP
     alpha = textureSample(roughness_map, map_sampler, map_uv(paper.roughness_place, in)).x;
     alpha = clamp(alpha, ALPHA_MIN, 1.0);
+#endif
+#ifdef NORMAL_MAP
+    alpha = widened(alpha, shortening);
 #endif
 #ifdef TRANSMISSION
     var other_albedo = paper.other_bare;
@@ -358,25 +369,27 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
     let s = Surface(albedo, alpha, paper.eta, paper.f_normal, paper.specular, paper.f_capture);
 #ifdef COUPLED
+    var powers = vec4(1.0, 0.0, 0.0, 0.0);
 #ifdef ROUGHNESS_MAP
-    let powers = fit_powers(alpha);
-#else
-    let powers = vec4(1.0, 0.0, 0.0, 0.0);
+    powers = fit_powers(alpha);
+#endif
+#ifdef NORMAL_MAP
+    powers = fit_powers(alpha);
 #endif
     let row = interface_row(paper.interface_table, powers);
     let mean = interface_mean_at(paper.interface_table, powers);
     let at_o = interface_at(row, max(dot(n, v), MU_MIN));
-    let lit = albedo_of(s, mean);
+    let paper_albedo = albedo_of(s, mean);
 #endif
 #ifdef TIER_STUDY
-    let depth = optical_depth(paper.film, paper.split.capture_path, lit / paper.lit_bare);
+    let depth = optical_depth(paper.film, paper.split.capture_path, paper_albedo / paper.lit_bare);
     let particle = Particle(vec3(1.0), 1.0, vec3(0.0), 0.0);
-    let shares = Shares(lit, 0.0, vec3(0.0));
+    let shares = Shares(paper_albedo, 0.0, vec3(0.0));
 #endif
 #ifdef TRANSMISSION
     // Both inks by their photographs, over the bare paper's.
 #ifdef COUPLED
-    let share_f = lit / paper.lit_bare;
+    let share_f = paper_albedo / paper.lit_bare;
     let share_b = max(other_albedo - capture_floor(s, mean), vec3(0.0)) / paper.other_bare;
 #else
     let share_f = albedo / paper.lit_bare;
@@ -399,6 +412,11 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let seen = Seen(vec3(0.0), clear, vec3(0.0), r_i, r_i);
 #endif
 #endif
+#endif
+    // The surface under directed light: its mean normal is `shortening` times the unit one.
+    var lit = s;
+#ifdef NORMAL_MAP
+    lit.albedo *= shortening;
 #endif
     var radiance = vec3(0.0);
 #ifdef TRANSMISSION
@@ -449,46 +467,53 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
             let mu_i = dot(n, incidence.l);
             if mu_i > 0.0 && dot(geometric, incidence.l) > 0.0 {
 #ifdef TIER_LAMBERT
-                let f = brdf_lambert(s);
+                let f = brdf_lambert(lit);
 #endif
 #ifdef TIER_DRAFT
-                let f = brdf_draft(s, facing(n, incidence.l, v));
+                let f = brdf_draft(lit, facing(n, incidence.l, v));
+#endif
+#ifdef COUPLED
+                var at_i = interface_at(row, mu_i);
+#ifdef NORMAL_MAP
+                // Before the albedo's bounds, as they belong to the paper and not to its relief.
+                at_i.t *= shortening;
+#endif
 #endif
 #ifdef TIER_GALLERY
-                let f = brdf_gallery(s, facing(n, incidence.l, v), interface_at(row, mu_i), at_o, mean);
+                let f = brdf_gallery(s, facing(n, incidence.l, v), at_i, at_o, mean);
 #endif
 #ifdef TIER_STUDY
                 let f = brdf_study(
-                    s, facing(n, incidence.l, v), interface_at(row, mu_i), at_o, mean, paper.split,
-                    depth, particle, shares,
+                    s, facing(n, incidence.l, v), at_i, at_o, mean, paper.split, depth, particle,
+                    shares,
                 );
 #endif
 #ifdef TIER_ISLE
-                let f = brdf_isle(s, facing(n, incidence.l, v));
+                let f = brdf_isle(lit, facing(n, incidence.l, v));
 #endif
 #ifdef TIER_PHONG
-                let f = brdf_phong(s, off_mirror(n, incidence.l, v));
+                let f = brdf_phong(lit, off_mirror(n, incidence.l, v));
 #endif
 #ifdef TIER_PHONG_PLAIN
-                let f = brdf_phong_plain(s, facing(n, incidence.l, v), off_mirror(n, incidence.l, v));
+                let f = brdf_phong_plain(lit, facing(n, incidence.l, v), off_mirror(n, incidence.l, v));
 #endif
 #ifdef TIER_BLINN_PHONG
-                let f = brdf_blinn_phong(s, facing(n, incidence.l, v));
+                let f = brdf_blinn_phong(lit, facing(n, incidence.l, v));
 #endif
 #ifdef TIER_BLINN_PHONG_PLAIN
-                let f = brdf_blinn_phong_plain(s, facing(n, incidence.l, v));
+                let f = brdf_blinn_phong_plain(lit, facing(n, incidence.l, v));
 #endif
 #ifdef TIER_COOK_TORRANCE
-                let f = brdf_cook_torrance(s, facing(n, incidence.l, v));
+                let f = brdf_cook_torrance(lit, facing(n, incidence.l, v));
 #endif
 #ifdef TIER_COOK_TORRANCE_GAUSS
-                let f = brdf_cook_torrance_gauss(s, facing(n, incidence.l, v));
+                let f = brdf_cook_torrance_gauss(lit, facing(n, incidence.l, v));
 #endif
 #ifdef TIER_COOK_TORRANCE_BLINN
-                let f = brdf_cook_torrance_blinn(s, facing(n, incidence.l, v));
+                let f = brdf_cook_torrance_blinn(lit, facing(n, incidence.l, v));
 #endif
 #ifdef TIER_OREN_NAYAR
-                let f = brdf_oren_nayar(s, facing(n, incidence.l, v));
+                let f = brdf_oren_nayar(lit, facing(n, incidence.l, v));
 #endif
                 radiance += f * incidence.e * mu_i;
             }
@@ -506,7 +531,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     }
 #ifdef AMBIENT
 #ifdef COUPLED
-    var diffuse = lit * (at_o.t * mean.t_mean * mean.capture);
+    var diffuse = paper_albedo * (at_o.t * mean.t_mean * mean.capture);
 #ifdef TIER_STUDY
     // Half of the path is that of diffuse light.
     let way_out = depth * (1.0 / inner_cosine(max(dot(n, v), MU_MIN), s.eta) - paper.split.capture_path);

@@ -113,8 +113,11 @@ impl MapUse {
     pub fn gpu_bytes(&self) -> u64 {
         let [width, height] = self.file().size.map(u64::from);
         let texel = match self {
-            Self::Albedo(_) | Self::OtherAlbedo(_) | Self::Overlay(_) => 8,
-            Self::Normal(_) | Self::NormalFromHeight(..) => 4,
+            Self::Albedo(_)
+            | Self::OtherAlbedo(_)
+            | Self::Overlay(_)
+            | Self::Normal(_)
+            | Self::NormalFromHeight(..) => 8,
             Self::Roughness(_) | Self::Transmission(_) => 2,
             Self::Outline(_) => 1,
         };

@@ -16,5 +16,7 @@ mod colour;
 mod lamps;
 #[path = "frames/layers.rs"]
 mod layers;
+#[path = "frames/relief.rs"]
+mod relief;
 #[path = "frames/sheets.rs"]
 mod sheets;

@@ -35,6 +35,8 @@ mod gpu;
 mod interfaces;
 #[path = "parity/lamps.rs"]
 mod lamps;
+#[path = "parity/relief.rs"]
+mod relief;
 #[path = "parity/study.rs"]
 mod study;
 

@@ -384,6 +384,7 @@ impl Sentinel {
             outline_place: self.map_place().0,
             level: self.vec4(),
             light_table: self.vec3(),
+            normal_out: self.vec4(),
             interface_table: self.interface().0,
             lights: std::array::from_fn::<_, MAX_LAMPS, _>(|_| self.light().0),
             overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),

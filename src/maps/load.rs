@@ -75,11 +75,12 @@ fn in_gamut(
     pyramid::build::<f16, 4, 4>(raster.size(), row, paint)
 }
 
-/// Loads a normal map as the x (right) and y (up) of unit normals; z is positive. Means of
-/// vectors are normalised again at every level. Integer files code −1…1 around their middle code
-/// (128 or 32768 is exactly 0), float files hold the components themselves. Normals without
-/// length, or that face away from the viewer, are flat. [`normal_coding`] says how the texels
-/// are to be read.
+/// Loads a normal map as the x (right), y (up) and z (out) of unit normals, in 16 bits, with 1 as
+/// a fourth channel. Smaller levels hold the means of the vectors as they are, shorter than 1:
+/// what they lost is the spread of the normals under a texel (`optics::relief`). Integer files
+/// code −1…1 around their middle code (128 or 32768 is exactly 0), float files hold the
+/// components themselves. Normals without length, or that face away from the viewer, are flat.
+/// [`normal_coding`] says how the texels are to be read.
 ///
 /// # Errors
 /// As [`super::verify`], and [`MapError::Unsupported`] for fewer than 3 channels.
@@ -94,9 +95,9 @@ pub fn load_normal(path: &Path, y: NormalY) -> Result<Pyramid, MapError> {
     }
     let up = if y == NormalY::Up { 1.0 } else { -1.0 };
     let pyramid = match raster.samples {
-        Samples::U8(_) => normals::<u8>(&raster, up, Coding::of_codes(255.0, 128.0)),
-        Samples::U16(_) => normals::<u16>(&raster, up, Coding::of_codes(65535.0, 32768.0)),
-        Samples::F32(_) => normals::<u16>(
+        Samples::U8(_) => normals(&raster, up, Coding::of_codes(255.0, 128.0)),
+        Samples::U16(_) => normals(&raster, up, Coding::of_codes(65535.0, 32768.0)),
+        Samples::F32(_) => normals(
             &raster,
             up,
             Coding {
@@ -145,25 +146,26 @@ pub fn normal_coding(texels: &Texels) -> Coding {
     }
 }
 
-fn normals<T: Texel>(raster: &Raster, up: f32, file: Coding) -> Pyramid {
+fn normals(raster: &Raster, up: f32, file: Coding) -> Pyramid {
     let row = |y: usize, out: &mut [[f32; 3]]| {
         raster.for_each_in_row(y, |x, [nx, ny, nz, _]| {
             let [nx, ny, nz] = [nx, ny, nz].map(|v| file.decode(v));
             out[x] = unit([nx, ny * up, nz]);
         });
     };
-    pack_normals::<T>(raster.size(), row)
+    pack_normals(raster.size(), row)
 }
 
 /// The chain of a picture of unit normals, coded as [`normal_coding`] says.
-pub(super) fn pack_normals<T: Texel>(
+pub(super) fn pack_normals(
     size: [usize; 2],
     row: impl Fn(usize, &mut [[f32; 3]]) + Sync,
 ) -> Pyramid {
-    let texels = normal_coding(&T::wrap(Vec::new()));
-    pyramid::build::<T, 3, 2>(size, row, |mean| {
-        let [x, y, _] = unit(mean);
-        [texels.encode(x), texels.encode(y)]
+    // Three channels are no format of graphics cards; 8 bits cannot tell a mean that is shorter
+    // by less than 1/256, which is a spread of 7°.
+    let texels = Coding::of_codes(65535.0, 32768.0);
+    pyramid::build::<u16, 3, 4>(size, row, |[x, y, z]| {
+        [texels.encode(x), texels.encode(y), texels.encode(z), 1.0]
     })
 }
 

@@ -22,6 +22,7 @@ pub mod medium;
 pub mod microfacet;
 pub mod photometry;
 pub mod quadrature;
+pub mod relief;
 pub mod slab;
 pub mod spectrum;
 pub mod study;

@@ -281,6 +281,7 @@ pub struct PaperUniform {
     pub outline_place: MapPlace,
     pub level: Vec4,
     pub light_table: Vec3,
+    pub normal_out: Vec4,
     pub interface_table: InterfaceUniform,
     pub lights: [LightUniform; MAX_LAMPS],
     pub overlays: [MapPlace; MAX_OVERLAYS],
@@ -349,5 +350,6 @@ impl PaperUniform {
         let (x, y) = (DVec2::new(x.x, -x.y), DVec2::new(y.x, -y.y));
         self.normal_axes = DVec4::new(x.x, x.y, y.x, y.y).as_vec4() * coding.scale as f32;
         self.normal_offset = ((x + y) * coding.offset).as_vec2();
+        self.normal_out = DVec4::new(coding.scale, coding.offset, 0.0, 0.0).as_vec4();
     }
 }

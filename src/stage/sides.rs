@@ -244,7 +244,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
         }
     }
     if side.terms.tier.is_coupled() {
-        let table = if side.terms.roughness_map {
+        let table = if side.terms.roughness_map || side.terms.normal_map {
             InterfaceTable::new(paper.index, paper.specular)
         } else {
             InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular)

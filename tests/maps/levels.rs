@@ -109,13 +109,12 @@ fn integers_decode_within_one_step_of_linear_16_bits() {
     }
 }
 
-fn decoded(pyramid: &Pyramid, level: usize) -> Vec<[f64; 2]> {
+fn decoded(pyramid: &Pyramid, level: usize) -> Vec<[f64; 3]> {
     let Coding { scale, offset } = normal_coding(&pyramid.levels[level].texels);
     let decode = |stored: f32| scale * f64::from(stored) + offset;
-    let (x, y) = (channel(pyramid, level, 0), channel(pyramid, level, 1));
-    x.into_iter()
-        .zip(y)
-        .map(|(x, y)| [decode(x), decode(y)])
+    let [x, y, z] = [0, 1, 2].map(|c| channel(pyramid, level, c));
+    (0..x.len())
+        .map(|i| [x[i], y[i], z[i]].map(decode))
         .collect()
 }
 
@@ -127,13 +126,18 @@ fn flat_normals_are_exactly_flat() {
         for code in [[128, 128, 255], [128, 128, 128], [200, 128, 10]] {
             let pyramid = self::load(5, 4, |_, _| code, load);
             for level in 0..pyramid.levels.len() {
-                let Texels::Unorm8(stored) = &pyramid.levels[level].texels else {
-                    panic!("8-bit files stay 8-bit");
+                let Texels::Unorm16(stored) = &pyramid.levels[level].texels else {
+                    panic!("normals have 16 bits");
                 };
-                assert!(stored.iter().all(|&v| v == 128), "{code:?}: {stored:?}");
-                for [x, y] in decoded(&pyramid, level) {
-                    // What f32 leaves of 128/255.
-                    assert!(x.abs() < 1e-7 && y.abs() < 1e-7);
+                assert!(
+                    stored
+                        .chunks(4)
+                        .all(|v| v == [32768, 32768, u16::MAX, u16::MAX]),
+                    "{code:?}: {stored:?}"
+                );
+                for [x, y, z] in decoded(&pyramid, level) {
+                    // What f32 leaves of 32768/65535.
+                    assert!(x.abs() < 1e-7 && y.abs() < 1e-7 && (z - 1.0).abs() < 1e-7);
                 }
             }
         }
@@ -141,8 +145,8 @@ fn flat_normals_are_exactly_flat() {
 }
 
 #[test]
-fn normals_are_averaged_as_vectors_and_normalised() {
-    // (0.6, 0, 0.8) beside (−0.8, 0, 0.6): their mean points along (−0.1, 0, 0.7).
+fn normals_are_averaged_as_vectors_and_stay_short() {
+    // (0.6, 0, 0.8) beside (−0.8, 0, 0.6): their mean is (−0.1, 0, 0.7), of length √½.
     let folder = folder();
     let path = folder.path().join("normal.png");
     let code = |n: f64| (n * 32767.0).round() as i32 + 32768;
@@ -150,13 +154,12 @@ fn normals_are_averaged_as_vectors_and_normalised() {
     let pixels = [pixel([0.6, 0.0, 0.8]), pixel([-0.8, 0.0, 0.6])];
     encode::save_png_rgb16(&path, 2, 1, &pixels, None).expect("written");
     let pyramid = maps::load_normal(&path, NormalY::Up).expect("read");
-    let [[x, y]] = decoded(&pyramid, 1)[..] else {
+    let [[x, y, z]] = decoded(&pyramid, 1)[..] else {
         panic!("one texel")
     };
-    let expected = -0.1 / 0.1f64.hypot(0.7);
     assert!(
-        (x - expected).abs() < 4.0 * UNORM16 && y.abs() < 1e-7,
-        "{x} not {expected}, {y}"
+        (x + 0.1).abs() < 4.0 * UNORM16 && (z - 0.7).abs() < 4.0 * UNORM16 && y.abs() < 1e-7,
+        "{x}, {y}, {z}"
     );
 }
 
