@@ -62,7 +62,6 @@ fn tiers_that_are_not_shown_name_those_that_are() {
 fn commands_of_later_versions_never_succeed() {
     for command in [
         "reference",
-        "bsdf",
         "tradeoff",
         "prepare",
         "import",
