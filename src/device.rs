@@ -18,14 +18,20 @@ const BACKENDS: Backends = Backends::PRIMARY;
 /// # Errors
 /// [`NoDevice`] if there is none.
 pub fn probe() -> Result<(), NoDevice> {
+    adapter().map(drop)
+}
+
+/// The adapter that Bevy will take.
+///
+/// # Errors
+/// [`NoDevice`] if there is none.
+pub fn adapter() -> Result<wgpu::Adapter, NoDevice> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: BACKENDS,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
     let options = wgpu::RequestAdapterOptions::default();
-    bevy::tasks::block_on(instance.request_adapter(&options))
-        .map(|_| ())
-        .map_err(|_| NoDevice)
+    bevy::tasks::block_on(instance.request_adapter(&options)).map_err(|_| NoDevice)
 }
 
 /// How Bevy is to create its renderer.

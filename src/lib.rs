@@ -15,6 +15,7 @@
 //! | [`visitor`] | the window: hand, lamp, keys, caption |
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
 //! | [`device`] | whether there is a graphics device |
+//! | [`compute`] | the shipped physics on the graphics device, without a picture |
 //! | [`sample`] | the sample exhibits, drawn by code |
 //! | [`cli`] | one file for each command |
 //!
@@ -29,6 +30,7 @@
 
 pub mod cli;
 pub mod colour;
+pub mod compute;
 pub mod develop;
 pub mod device;
 pub mod manifest;

@@ -1,5 +1,7 @@
 //! The command line as a contract: exit codes, streams and files.
 
+#[path = "cli/bsdf.rs"]
+mod bsdf;
 #[path = "cli/commands.rs"]
 mod commands;
 #[path = "cli/render.rs"]

@@ -34,6 +34,7 @@ const MAY_IMPORT: [(&str, &[&str]); 15] = [
         ],
     ),
     ("device", &["bevy"]),
+    ("compute", &["bevy", "device", "optics", "sheet"]),
     (
         "shot",
         &["bevy", "device", "manifest", "maps", "stage", "colour"],

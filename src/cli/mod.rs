@@ -1,6 +1,7 @@
 //! The command line. Results go to standard output and words to standard error; the program
 //! ends with 0 (done), 1 (the input is at fault), 2 (wrong usage) or 3 (no graphics device).
 
+mod bsdf;
 mod check;
 mod failure;
 mod later;
@@ -44,6 +45,8 @@ enum Command {
     Render(render::Arguments),
     /// Name every fault of an exhibit, and what its scenes require
     Check(check::Arguments),
+    /// Print a medium's BSDF at pairs of directions
+    Bsdf(bsdf::Arguments),
     /// Start an exhibit from one picture
     New(new::Arguments),
     /// Write the sample exhibits and their maps
@@ -64,6 +67,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Show(arguments) => show::run(arguments),
         Command::Render(arguments) => render::run(arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Bsdf(arguments) => bsdf::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

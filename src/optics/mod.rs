@@ -14,6 +14,7 @@
 //! `paper_baselines.wgsl`) carry the twin's name and order.
 
 pub mod baselines;
+pub mod bsdf;
 pub mod fresnel;
 pub mod ink;
 pub mod lamp;

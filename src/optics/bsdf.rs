@@ -1,0 +1,224 @@
+//! A tier's BSDF at pairs of directions, for tables: `recto bsdf`.
+
+use glam::DVec3;
+
+use super::{
+    baselines::{
+        brdf_blinn_phong, brdf_blinn_phong_plain, brdf_cook_torrance, brdf_cook_torrance_blinn,
+        brdf_cook_torrance_gauss, brdf_isle, brdf_oren_nayar, brdf_phong, brdf_phong_plain,
+        off_mirror,
+    },
+    medium::Medium,
+    table::InterfaceTable,
+    tier::{Surface, Tier, brdf_draft, brdf_gallery, brdf_lambert, facing},
+};
+
+/// The columns that are read, in this order.
+pub const COLUMNS: [&str; 4] = ["theta_i", "phi_i", "theta_o", "phi_o"];
+/// The least and the most that they may hold, in degrees.
+const RANGES: [[f64; 2]; 4] = [[0.0, 90.0], [-360.0, 360.0], [0.0, 180.0], [-360.0, 360.0]];
+
+/// Directions towards light and eye in degrees, in the order of [`COLUMNS`]: θ from the normal,
+/// φ anticlockwise from the right. θo above 90° is light that has gone through the sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair(pub [f64; 4]);
+
+impl Pair {
+    /// Unit vectors towards the light and the eye, in the local frame.
+    pub fn directions(&self) -> [DVec3; 2] {
+        let [theta_i, phi_i, theta_o, phi_o] = self.0.map(f64::to_radians);
+        let direction = |theta: f64, phi: f64| {
+            let across = theta.sin();
+            DVec3::new(across * phi.cos(), across * phi.sin(), theta.cos())
+        };
+        [direction(theta_i, phi_i), direction(theta_o, phi_o)]
+    }
+
+    /// Whether the eye is on the side that the light does not reach.
+    pub fn is_transmitted(&self) -> bool {
+        self.0[2] > 90.0
+    }
+}
+
+/// What a tier says of one pair, per channel of linear sRGB.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// In sr⁻¹, without the cosine.
+    pub f: DVec3,
+    /// Share of the light that a smooth surface mirrors into one direction. No tier so far has
+    /// such a part: the smoothest surface has facets.
+    pub mirror: DVec3,
+    /// Share of the light that goes straight through. No tier so far has such a part.
+    pub ballistic: DVec3,
+}
+
+/// A bare medium with what a tier asks of its interface.
+#[derive(Clone, Debug)]
+pub struct Specimen {
+    pub surface: Surface,
+    pub interface: InterfaceTable,
+}
+
+impl Specimen {
+    /// `medium` where it photographs with this `albedo` (linear sRGB, each in [0, 1]).
+    pub fn new(medium: &Medium, albedo: DVec3) -> Self {
+        let surface = Surface::new(albedo, medium.roughness, medium.index, 1.0);
+        Self {
+            surface,
+            interface: InterfaceTable::at_roughness(surface.alpha, medium.index, 1.0),
+        }
+    }
+
+    /// The BSDF of `tier` at `pair`; `None` for a tier that this version cannot evaluate. Until
+    /// tiers know the sheet's other side, they let no light through.
+    pub fn at(&self, tier: Tier, pair: &Pair) -> Option<Sample> {
+        let f = self.reflected(tier, pair.directions())?;
+        Some(Sample {
+            f: if pair.is_transmitted() {
+                DVec3::ZERO
+            } else {
+                f
+            },
+            ..Sample::default()
+        })
+    }
+
+    fn reflected(&self, tier: Tier, [l, v]: [DVec3; 2]) -> Option<DVec3> {
+        let s = &self.surface;
+        let g = facing(DVec3::Z, l, v);
+        let off = off_mirror(DVec3::Z, l, v);
+        Some(match tier {
+            Tier::Draft => brdf_draft(s, &g),
+            Tier::Gallery => {
+                let at = |mu: f64| self.interface.at(mu, s.alpha);
+                let mean = self.interface.mean_at(s.alpha);
+                brdf_gallery(s, &g, &at(g.mu_i), &at(g.mu_o), &mean)
+            }
+            Tier::Study => return None,
+            Tier::Isle => brdf_isle(s, &g),
+            Tier::Lambert => brdf_lambert(s),
+            Tier::Phong => brdf_phong(s, off),
+            Tier::BlinnPhong => brdf_blinn_phong(s, &g),
+            Tier::CookTorrance => brdf_cook_torrance(s, &g),
+            Tier::OrenNayar => brdf_oren_nayar(s, &g),
+            Tier::PhongPlain => brdf_phong_plain(s, &g, off),
+            Tier::BlinnPhongPlain => brdf_blinn_phong_plain(s, &g),
+            Tier::CookTorranceGauss => brdf_cook_torrance_gauss(s, &g),
+            Tier::CookTorranceBlinn => brdf_cook_torrance_blinn(s, &g),
+        })
+    }
+}
+
+/// What is wrong at a place of a table of pairs; lines and columns count from 1, columns by the
+/// commas.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("line {line}, column {column}: found {found:?}; {remedy}")]
+pub struct PairFault {
+    pub line: usize,
+    pub column: usize,
+    pub found: String,
+    pub remedy: String,
+}
+
+/// Reads a table of pairs: CSV with a header of [`COLUMNS`]; `#` begins a comment, and empty lines
+/// are passed over.
+///
+/// # Errors
+/// All faults.
+pub fn read_pairs(text: &str) -> Result<Vec<Pair>, Vec<PairFault>> {
+    let mut faults = Vec::new();
+    let mut rows = text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .enumerate()
+        .map(|(i, line)| (i + 1, line.split('#').next().unwrap_or_default().trim()))
+        .filter(|(_, line)| !line.is_empty());
+    let fault = |line, column, found: &str, remedy: String| PairFault {
+        line,
+        column,
+        found: found.into(),
+        remedy,
+    };
+    let header = COLUMNS.join(",");
+    match rows.next() {
+        Some((_, line)) if line.split(',').map(str::trim).eq(COLUMNS) => {}
+        Some((line, found)) => {
+            let remedy = format!("write the header {header} first");
+            return Err(vec![fault(line, 1, found, remedy)]);
+        }
+        None => {
+            let remedy = format!("write the header {header} and pairs of directions below");
+            return Err(vec![fault(1, 1, "", remedy)]);
+        }
+    }
+    let mut pairs = Vec::new();
+    for (line, row) in rows {
+        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
+        if cells.len() != COLUMNS.len() {
+            let remedy = format!("write four numbers, {header}");
+            faults.push(fault(line, cells.len().min(COLUMNS.len() + 1), row, remedy));
+            continue;
+        }
+        let mut pair = [0.0; 4];
+        for (i, (cell, [low, high])) in cells.iter().zip(RANGES).enumerate() {
+            match cell.parse::<f64>() {
+                Ok(degrees) if (low..=high).contains(&degrees) => pair[i] = degrees,
+                _ => {
+                    let name = COLUMNS[i];
+                    let remedy = format!("{name} is a number from {low} to {high}, in degrees");
+                    faults.push(fault(line, i + 1, cell, remedy));
+                }
+            }
+        }
+        pairs.push(Pair(pair));
+    }
+    if faults.is_empty() {
+        Ok(pairs)
+    } else {
+        Err(faults)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::medium::MediumId;
+
+    #[test]
+    fn all_faults_of_a_table_are_found_at_once() {
+        let text = "# pairs\ntheta_i,phi_i,theta_o,phi_o\n1,2,3,4 # sound\n\n\
+                    91,0,0,0\n0,x,0,NaN\n1,2,3\n-0,-360,180,360\n";
+        let faults = read_pairs(text).expect_err("faults");
+        let places: Vec<_> = faults.iter().map(|f| (f.line, f.column)).collect();
+        assert_eq!(places, [(5, 1), (6, 2), (6, 4), (7, 3)]);
+        assert_eq!(read_pairs("").expect_err("no header").len(), 1);
+        assert_eq!(read_pairs("0,0,0,0").expect_err("no header")[0].line, 1);
+        let sound = "\u{feff}theta_i, phi_i, theta_o, phi_o\r\n45, 0, 0, 0\r\n";
+        assert_eq!(read_pairs(sound), Ok(vec![Pair([45.0, 0.0, 0.0, 0.0])]));
+    }
+
+    #[test]
+    fn every_tier_but_study_is_evaluated_and_lets_nothing_through() {
+        let albedo = DVec3::new(0.8, 0.5, 0.2);
+        for id in MediumId::all() {
+            let specimen = Specimen::new(id.medium(), albedo);
+            for tier in Tier::ALL {
+                let at = |theta_i, theta_o| specimen.at(tier, &Pair([theta_i, 0.0, theta_o, 0.0]));
+                assert_eq!(at(45.0, 0.0).is_some(), tier.is_shown(), "{tier}");
+                for (theta_i, theta_o) in [(0.0, 0.0), (45.0, 0.0), (90.0, 90.0), (90.0, 0.0)] {
+                    if let Some(sample) = at(theta_i, theta_o) {
+                        assert!(
+                            sample.f.is_finite() && sample.f.min_element() >= 0.0,
+                            "{tier}"
+                        );
+                    }
+                    let through = at(theta_i, 180.0 - theta_i.min(89.0));
+                    assert!(
+                        through.is_none_or(|sample| sample == Sample::default()),
+                        "{tier}"
+                    );
+                }
+            }
+        }
+    }
+}
