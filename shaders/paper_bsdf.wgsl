@@ -212,7 +212,7 @@ fn capture_floor(s: Surface, mean: InterfaceMean) -> f32 {
 
 fn albedo_of(s: Surface, mean: InterfaceMean) -> vec3<f32> {
     let most = vec3(1.0 / (mean.t_mean * mean.capture));
-    return clamp(s.albedo - capture_floor(s, mean), vec3(0.0), most);
+    return min(max(s.albedo - capture_floor(s, mean), min(s.albedo, vec3(0.0))), most);
 }
 
 fn brdf_gallery(

@@ -6,7 +6,8 @@
 
 use std::borrow::Cow;
 
-use glam::DVec3;
+use bevy::render::render_resource::{ShaderType, encase::StorageBuffer};
+use glam::{DVec3, Vec3};
 
 use crate::{
     device::{self, NoDevice},
@@ -14,7 +15,10 @@ use crate::{
         bsdf::{Pair, Sample, Specimen},
         tier::Tier,
     },
-    sheet::{PAPER_BASELINES, PAPER_BSDF},
+    sheet::{
+        PAPER_BASELINES, PAPER_BSDF,
+        uniform::{InterfaceUniform, SplitUniform, ThroughUniform},
+    },
 };
 
 /// Threads in a workgroup.
@@ -36,14 +40,16 @@ pub enum ComputeError {
     Lost(String),
 }
 
-/// The shader's call for a tier; `None` for one that this version cannot evaluate.
-fn call(tier: Tier) -> Option<&'static str> {
-    Some(match tier {
+/// The shader's call for a tier.
+fn call(tier: Tier) -> &'static str {
+    match tier {
         Tier::Draft => "brdf_draft(s, g)",
         Tier::Gallery => {
             "brdf_gallery(s, g, interface_at(row, g.mu_i), interface_at(row, g.mu_o), mean)"
         }
-        Tier::Study => return None,
+        Tier::Study => {
+            "study(s, g, interface_at(row, g.mu_i), interface_at(row, g.mu_o), mean, v.z)"
+        }
         Tier::Isle => "brdf_isle(s, g)",
         Tier::Lambert => "brdf_lambert(s)",
         Tier::Phong => "brdf_phong(s, off)",
@@ -54,19 +60,41 @@ fn call(tier: Tier) -> Option<&'static str> {
         Tier::BlinnPhongPlain => "brdf_blinn_phong_plain(s, g)",
         Tier::CookTorranceGauss => "brdf_cook_torrance_gauss(s, g)",
         Tier::CookTorranceBlinn => "brdf_cook_torrance_blinn(s, g)",
-    })
+    }
 }
 
 /// The physics with an entry point that evaluates `tier`. The specimen's constants come first in
 /// `given`, then the pairs.
-fn text(tier: Tier) -> Option<String> {
-    let call = call(tier)?;
-    Some(format!(
+fn text(tier: Tier) -> String {
+    let call = call(tier);
+    format!(
         "{PAPER_BSDF}\n{PAPER_BASELINES}
-        struct Specimen {{ albedo: vec4<f32>, rest: vec4<f32>, table: InterfaceTable }}
+        struct Specimen {{
+            albedo: vec3<f32>, alpha: f32, eta: f32, f_normal: f32, specular: f32, f_capture: f32,
+            depth: vec3<f32>, depth_b: vec3<f32>, rho_f: vec3<f32>, rho_b: vec3<f32>,
+            table: InterfaceTable, split: Split, through: Through,
+        }}
         @group(0) @binding(0) var<storage, read> specimen: Specimen;
         @group(0) @binding(1) var<storage, read> given: array<f32>;
         @group(0) @binding(2) var<storage, read_write> found: array<f32>;
+        fn study(
+            s: Surface, g: Facing, at_i: Interface, at_o: Interface, mean: InterfaceMean, v_z: f32,
+        ) -> vec3<f32> {{
+            if v_z < 0.0 {{
+                let behind = Facing(g.mu_i, max(-v_z, MU_MIN), 0.0, 0.0);
+                let seen = Seen(
+                    vec3(0.0), 1.0, specimen.depth_b, specimen.rho_f, specimen.rho_b,
+                );
+                let row = interface_row(specimen.table, vec4(1.0, 0.0, 0.0, 0.0));
+                let out = interface_at(row, behind.mu_o);
+                return btdf_study(specimen.through, seen, behind, at_i, out, s.eta);
+            }}
+            let particle = Particle(vec3(0.0), 0.0, vec3(0.0), 0.0);
+            let shares = Shares(albedo_of(s, mean), 0.0, vec3(0.0));
+            return brdf_study(
+                s, g, at_i, at_o, mean, specimen.split, specimen.depth, particle, shares,
+            );
+        }}
         @compute @workgroup_size({WORKGROUP})
         fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{
             let at = id.x * {PAIR}u;
@@ -74,8 +102,10 @@ fn text(tier: Tier) -> Option<String> {
             if to >= arrayLength(&found) {{ return; }}
             let l = vec3(given[at], given[at + 1u], given[at + 2u]);
             let v = vec3(given[at + 3u], given[at + 4u], given[at + 5u]);
-            let rest = specimen.rest;
-            let s = Surface(specimen.albedo.xyz, rest.x, rest.y, rest.z, rest.w);
+            let s = Surface(
+                specimen.albedo, specimen.alpha, specimen.eta, specimen.f_normal,
+                specimen.specular, specimen.f_capture,
+            );
             let n = vec3(0.0, 0.0, 1.0);
             let g = facing(n, l, v);
             let off = off_mirror(n, l, v);
@@ -85,31 +115,58 @@ fn text(tier: Tier) -> Option<String> {
             let f = {call};
             found[to] = f.x; found[to + 1u] = f.y; found[to + 2u] = f.z;
         }}"
-    ))
+    )
 }
 
-fn words(specimen: &Specimen) -> Vec<f32> {
+/// Twin of `Specimen` in [`text`].
+#[derive(ShaderType)]
+struct SpecimenUniform {
+    albedo: Vec3,
+    alpha: f32,
+    eta: f32,
+    f_normal: f32,
+    specular: f32,
+    f_capture: f32,
+    depth: Vec3,
+    depth_b: Vec3,
+    rho_f: Vec3,
+    rho_b: Vec3,
+    table: InterfaceUniform,
+    split: SplitUniform,
+    through: ThroughUniform,
+}
+
+fn constants(specimen: &Specimen) -> Result<Vec<u8>, ComputeError> {
     let s = &specimen.surface;
-    let table = &specimen.interface;
-    let head = [
-        [s.albedo.x, s.albedo.y, s.albedo.z, 0.0],
-        [s.alpha, s.eta, s.f_normal, s.specular],
-    ];
-    head.iter()
-        .chain(&table.t)
-        .chain(&table.lost)
-        .chain([&table.compensation, &table.t_mean, &table.capture])
-        .flatten()
-        .map(|x| *x as f32)
-        .collect()
+    let seen = specimen.seen();
+    let uniform = SpecimenUniform {
+        albedo: s.albedo.as_vec3(),
+        alpha: s.alpha as f32,
+        eta: s.eta as f32,
+        f_normal: s.f_normal as f32,
+        specular: s.specular as f32,
+        f_capture: s.f_capture as f32,
+        // Light from the front meets the ink that light through the sheet meets at its back.
+        depth: seen.depth_b.as_vec3(),
+        depth_b: seen.depth_b.as_vec3(),
+        rho_f: seen.rho_f.as_vec3(),
+        rho_b: seen.rho_b.as_vec3(),
+        table: InterfaceUniform::new(&specimen.interface),
+        split: SplitUniform::new(&specimen.study.split),
+        through: ThroughUniform::new(&specimen.study.through),
+    };
+    let mut buffer = StorageBuffer::new(Vec::new());
+    buffer
+        .write(&uniform)
+        .map_err(|error| ComputeError::Lost(error.to_string()))?;
+    Ok(buffer.into_inner())
 }
 
 fn bytes(words: impl IntoIterator<Item = f32>) -> Vec<u8> {
     words.into_iter().flat_map(f32::to_le_bytes).collect()
 }
 
-/// The BSDF of `tier` at `pairs`, as [`Specimen::at`] but in the shader; `None` for a tier that
-/// this version cannot evaluate.
+/// The BSDF of `tier` at `pairs`, as [`Specimen::at`] but in the shader.
 ///
 /// # Errors
 /// [`ComputeError`] where there is no device, or it fails.
@@ -117,10 +174,9 @@ pub fn evaluate(
     specimen: &Specimen,
     tier: Tier,
     pairs: &[Pair],
-) -> Result<Option<Vec<Sample>>, ComputeError> {
-    let Some(text) = text(tier) else {
-        return Ok(None);
-    };
+) -> Result<Vec<Sample>, ComputeError> {
+    let text = text(tier);
+    let constants = constants(specimen)?;
     let adapter = device::adapter()?;
     let request = adapter.request_device(&wgpu::DeviceDescriptor::default());
     let (device, queue) = bevy::tasks::block_on(request)?;
@@ -138,24 +194,30 @@ pub fn evaluate(
     });
     let mut samples = Vec::with_capacity(pairs.len());
     for batch in pairs.chunks(BATCH) {
-        let found = run(&device, &queue, &pipeline, &words(specimen), batch)?;
+        let found = run(&device, &queue, &pipeline, &constants, batch)?;
         samples.extend(batch.iter().zip(found).map(|(pair, f)| Sample {
-            f: if pair.is_transmitted() {
+            f: if pair.is_transmitted() && tier != Tier::Study {
                 DVec3::ZERO
             } else {
                 f
             },
+            // One direction of the whole sphere: there is nothing to integrate on the device.
+            ballistic: if tier == Tier::Study {
+                specimen.ballistic(pair)
+            } else {
+                DVec3::ZERO
+            },
             ..Sample::default()
         }));
     }
-    Ok(Some(samples))
+    Ok(samples)
 }
 
 fn run(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     pipeline: &wgpu::ComputePipeline,
-    constants: &[f32],
+    constants: &[u8],
     pairs: &[Pair],
 ) -> Result<Vec<DVec3>, ComputeError> {
     use wgpu::BufferUsages as Usage;
@@ -171,11 +233,14 @@ fn run(
         .iter()
         .flat_map(Pair::directions)
         .flat_map(|direction| direction.as_vec3().to_array());
-    let of_specimen = buffer(constants.len(), Usage::STORAGE | Usage::COPY_DST);
+    let of_specimen = buffer(
+        constants.len() / size_of::<f32>(),
+        Usage::STORAGE | Usage::COPY_DST,
+    );
     let input = buffer(pairs.len() * PAIR, Usage::STORAGE | Usage::COPY_DST);
     let output = buffer(pairs.len() * ANSWER, Usage::STORAGE | Usage::COPY_SRC);
     let copy = buffer(pairs.len() * ANSWER, Usage::MAP_READ | Usage::COPY_DST);
-    queue.write_buffer(&of_specimen, 0, &bytes(constants.iter().copied()));
+    queue.write_buffer(&of_specimen, 0, constants);
     queue.write_buffer(&input, 0, &bytes(directions));
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {

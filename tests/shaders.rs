@@ -177,7 +177,12 @@ fn signatures(text: &str, keyword: &str, open: char, close: char) -> BTreeMap<St
 }
 
 /// Functions of the twin sources that only the CPU calls.
-const CPU_ONLY: [&str; 3] = ["directional_albedo", "normal_reflectance", "polygon_form"];
+const CPU_ONLY: [&str; 4] = [
+    "capture_path",
+    "directional_albedo",
+    "normal_reflectance",
+    "polygon_form",
+];
 /// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
 /// pixel: these stand for methods, `Light::at`, `InterfaceTable::at` and `mean_at`.
 const GPU_ONLY: [&str; 11] = [
@@ -194,7 +199,7 @@ const GPU_ONLY: [&str; 11] = [
     "light_rectangle",
 ];
 /// Layouts of the shader's own. Where a uniform fills one, its offsets are compared.
-const GPU_LAYOUTS: [&str; 3] = ["InterfaceRow", "InterfaceTable", "Light"];
+const GPU_LAYOUTS: [&str; 5] = ["Film", "InterfaceRow", "InterfaceTable", "Light", "Split"];
 
 #[test]
 fn twins_have_the_same_names_and_order() {
@@ -454,8 +459,15 @@ fn uniforms_lie_in_memory_as_the_shader_reads_them() {
     let place = whole(sentinel.map_place());
     let paper = whole(sentinel.paper());
     let physics = parse(PAPER_BSDF);
-    let glue = Composer::new("").compose(&["TIER_GALLERY"]).unwrap();
+    let glue = Composer::new("")
+        .compose(&["TIER_GALLERY", "COUPLED"])
+        .unwrap();
+    let (film, split) = (whole(sentinel.film()), whole(sentinel.split()));
+    let through = whole(sentinel.through());
     for faults in [
+        misread(&physics, "Film", &film),
+        misread(&physics, "Split", &split),
+        misread(&physics, "Through", &through),
         misread(&physics, "Light", &light),
         misread(&physics, "InterfaceTable", &table),
         misread(&glue, "Light", &light),
@@ -488,7 +500,9 @@ fn members_out_of_place_are_found() {
 }
 
 /// Where the glue differs by more than a call.
-const TIERS: [&str; 3] = ["TIER_LAMBERT", "TIER_DRAFT", "TIER_GALLERY"];
+const TIERS: [&str; 4] = ["TIER_LAMBERT", "TIER_DRAFT", "TIER_GALLERY", "TIER_STUDY"];
+/// Defined with these tiers, and with them alone.
+const COUPLED: [&str; 2] = ["TIER_GALLERY", "TIER_STUDY"];
 /// These differ in the function that is called, and in nothing else.
 const BASELINES: [&str; 9] = [
     "TIER_ISLE",
@@ -525,6 +539,7 @@ fn can_occur(defined: &[&str]) -> bool {
     tiers == 1
         && (has("ALBEDO_MAP") || !(has("NORMAL_MAP") || has("ROUGHNESS_MAP")))
         && !(has("TIER_LAMBERT") && has("ROUGHNESS_MAP"))
+        && (has("TRANSMISSION") || !(has("TRANSMISSION_MAP") || has("OTHER_ALBEDO")))
         && !(has("AREA_LAMPS") && (has("DISTANT_LAMPS") || has("TIER_DRAFT")))
 }
 
@@ -562,7 +577,7 @@ fn the_glue_is_valid_for_every_four_terms() {
     let names: Vec<&str> = DEFINITIONS
         .iter()
         .copied()
-        .filter(|name| !BASELINES[1..].contains(name))
+        .filter(|name| !BASELINES[1..].contains(name) && *name != "COUPLED")
         .collect();
     let bits = names.len() as u32;
     let defined = |set: u32| -> Vec<&str> {
@@ -580,6 +595,9 @@ fn the_glue_is_valid_for_every_four_terms() {
                 let mut composer = Composer::new("");
                 for (turn, &set) in share.iter().enumerate() {
                     let mut defined = defined(set);
+                    if COUPLED.iter().any(|tier| defined.contains(tier)) {
+                        defined.push("COUPLED");
+                    }
                     if let Some(tier) = defined.iter_mut().find(|name| **name == BASELINES[0]) {
                         *tier = BASELINES[turn % BASELINES.len()];
                     }

@@ -5,7 +5,7 @@ use std::{fmt::Write, path::PathBuf};
 use clap::ValueEnum;
 use glam::DVec3;
 
-use super::{Failure, later, options, output};
+use super::{Failure, options, output};
 use crate::{
     compute::{self, ComputeError},
     manifest::{did_you_mean, quote},
@@ -80,11 +80,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Device::Cpu => pairs
             .iter()
             .map(|pair| specimen.at(arguments.tier, pair))
-            .collect(),
+            .collect::<Vec<Sample>>(),
         Device::Gpu => compute::evaluate(&specimen, arguments.tier, &pairs)?,
     };
-    let samples: Vec<Sample> =
-        samples.ok_or_else(|| later::not_yet(&format!("the tier {}", arguments.tier)))?;
     output::result(table(&pairs, &samples).trim_end())
 }
 

@@ -2,19 +2,27 @@
 
 use glam::DVec3;
 
+use crate::units::Micrometres;
+
 use super::{
     baselines::{
         brdf_blinn_phong, brdf_blinn_phong_plain, brdf_cook_torrance, brdf_cook_torrance_blinn,
         brdf_cook_torrance_gauss, brdf_isle, brdf_oren_nayar, brdf_phong, brdf_phong_plain,
         off_mirror,
     },
-    medium::Medium,
+    ink::{inner_cosine, internal_reflectance, optical_depth},
+    medium::{Medium, MediumKind},
+    microfacet::MU_MIN,
+    slab::Slab,
+    study::{Particle, Seen, Shares, Study, brdf_study, btdf_study},
     table::InterfaceTable,
-    tier::{Surface, Tier, brdf_draft, brdf_gallery, brdf_lambert, facing},
+    tier::{Facing, Surface, Tier, albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing},
 };
 
 /// The columns that are read, in this order.
 pub const COLUMNS: [&str; 4] = ["theta_i", "phi_i", "theta_o", "phi_o"];
+/// What a drawn medium lies on, linear sRGB.
+const DRAWN_ON: DVec3 = DVec3::splat(0.8);
 /// The least and the most that they may hold, in degrees.
 const RANGES: [[f64; 2]; 4] = [[0.0, 90.0], [-360.0, 360.0], [0.0, 180.0], [-360.0, 360.0]];
 
@@ -48,7 +56,8 @@ pub struct Sample {
     /// Share of the light that a smooth surface mirrors into one direction. No tier so far has
     /// such a part: the smoothest surface has facets.
     pub mirror: DVec3,
-    /// Share of the light that goes straight through. No tier so far has such a part.
+    /// Share of the light that goes straight through the sheet, unscattered: to an eye exactly
+    /// opposite.
     pub ballistic: DVec3,
 }
 
@@ -57,44 +66,135 @@ pub struct Sample {
 pub struct Specimen {
     pub surface: Surface,
     pub interface: InterfaceTable,
+    /// The paper, or what a drawn medium lies on.
+    pub study: Study,
 }
+
+/// Thickness of a specimen's sheet.
+const THICKNESS: Micrometres = Micrometres(150.0);
+/// How near to opposite each other two directions are one, as the sum of their unit vectors.
+const OPPOSITE: f64 = 1e-6;
 
 impl Specimen {
     /// `medium` where it photographs with this `albedo` (linear sRGB, each in [0, 1]).
     pub fn new(medium: &Medium, albedo: DVec3) -> Self {
         let surface = Surface::new(albedo, medium.roughness, medium.index, 1.0);
+        let interface = InterfaceTable::at_roughness(surface.alpha, medium.index, 1.0);
+        let bare = match medium.kind {
+            MediumKind::Paper => surface,
+            MediumKind::Drawn => Surface {
+                albedo: DRAWN_ON,
+                ..surface
+            },
+        };
+        let mean = interface.mean_at(surface.alpha);
+        let study = Study::new(&bare, &mean, Slab::rag_paper(THICKNESS));
         Self {
             surface,
-            interface: InterfaceTable::at_roughness(surface.alpha, medium.index, 1.0),
+            interface,
+            study,
         }
     }
 
-    /// The BSDF of `tier` at `pair`; `None` for a tier that this version cannot evaluate. Until
-    /// tiers know the sheet's other side, they let no light through.
-    pub fn at(&self, tier: Tier, pair: &Pair) -> Option<Sample> {
-        let f = self.reflected(tier, pair.directions())?;
-        Some(Sample {
-            f: if pair.is_transmitted() {
-                DVec3::ZERO
-            } else {
-                f
-            },
-            ..Sample::default()
-        })
+    /// What light through the sheet meets: a drawn medium on the side of the light.
+    pub fn seen(&self) -> Seen {
+        let share = self.share();
+        Seen {
+            depth_f: DVec3::ZERO,
+            depth_b: optical_depth(&self.study.film, self.study.film.capture_path, share),
+            rho_f: internal_reflectance(&self.study.film, DVec3::ONE),
+            rho_b: internal_reflectance(&self.study.film, share),
+            clear: 1.0,
+        }
     }
 
-    fn reflected(&self, tier: Tier, [l, v]: [DVec3; 2]) -> Option<DVec3> {
+    /// Photographed share of the bare paper's diffuse albedo.
+    fn share(&self) -> DVec3 {
+        let mean = self.interface.mean_at(self.surface.alpha);
+        albedo_of(&self.surface, &mean) / self.study.bare
+    }
+
+    /// The BSDF of `tier` at `pair`. Light goes through the sheet in the study tier alone.
+    pub fn at(&self, tier: Tier, pair: &Pair) -> Sample {
+        let [l, v] = pair.directions();
+        if !pair.is_transmitted() {
+            return Sample {
+                f: self.reflected(tier, l, v),
+                ..Sample::default()
+            };
+        }
+        if tier != Tier::Study {
+            return Sample::default();
+        }
+        Sample {
+            f: self.transmitted(l, v),
+            ballistic: self.ballistic(pair),
+            ..Sample::default()
+        }
+    }
+
+    fn transmitted(&self, l: DVec3, v: DVec3) -> DVec3 {
+        let s = &self.surface;
+        // Both cosines are taken from the side that they are on.
+        let g = Facing {
+            mu_i: l.z.max(MU_MIN),
+            mu_o: (-v.z).max(MU_MIN),
+            cos_d: 0.0,
+            sin2_h: 0.0,
+        };
+        let at = |mu: f64| self.interface.at(mu, s.alpha);
+        btdf_study(
+            &self.study.through,
+            &self.seen(),
+            &g,
+            &at(g.mu_i),
+            &at(g.mu_o),
+            s.eta,
+        )
+    }
+
+    /// What goes straight through, to an eye opposite the light.
+    pub fn ballistic(&self, pair: &Pair) -> DVec3 {
+        let [l, v] = pair.directions();
+        if !pair.is_transmitted() || (l + v).length() > OPPOSITE {
+            return DVec3::ZERO;
+        }
+        let mu = l.z.max(MU_MIN);
+        let t = self.interface.at(mu, self.surface.alpha).t;
+        let crossed = self.seen().depth_b + self.study.through.ballistic;
+        t * t * (-crossed / inner_cosine(mu, self.surface.eta)).exp()
+    }
+
+    fn reflected(&self, tier: Tier, l: DVec3, v: DVec3) -> DVec3 {
         let s = &self.surface;
         let g = facing(DVec3::Z, l, v);
         let off = off_mirror(DVec3::Z, l, v);
-        Some(match tier {
+        match tier {
             Tier::Draft => brdf_draft(s, &g),
             Tier::Gallery => {
                 let at = |mu: f64| self.interface.at(mu, s.alpha);
                 let mean = self.interface.mean_at(s.alpha);
                 brdf_gallery(s, &g, &at(g.mu_i), &at(g.mu_o), &mean)
             }
-            Tier::Study => return None,
+            Tier::Study => {
+                let at = |mu: f64| self.interface.at(mu, s.alpha);
+                let mean = self.interface.mean_at(s.alpha);
+                let shares = Shares {
+                    paper: albedo_of(s, &mean),
+                    ..Shares::default()
+                };
+                brdf_study(
+                    s,
+                    &g,
+                    &at(g.mu_i),
+                    &at(g.mu_o),
+                    &mean,
+                    &self.study.split,
+                    optical_depth(&self.study.film, self.study.film.capture_path, self.share()),
+                    &Particle::default(),
+                    &shares,
+                )
+            }
             Tier::Isle => brdf_isle(s, &g),
             Tier::Lambert => brdf_lambert(s),
             Tier::Phong => brdf_phong(s, off),
@@ -105,7 +205,7 @@ impl Specimen {
             Tier::BlinnPhongPlain => brdf_blinn_phong_plain(s, &g),
             Tier::CookTorranceGauss => brdf_cook_torrance_gauss(s, &g),
             Tier::CookTorranceBlinn => brdf_cook_torrance_blinn(s, &g),
-        })
+        }
     }
 }
 
@@ -198,27 +298,31 @@ mod tests {
     }
 
     #[test]
-    fn every_tier_but_study_is_evaluated_and_lets_nothing_through() {
+    fn every_tier_is_evaluated_and_only_study_lets_light_through() {
         let albedo = DVec3::new(0.8, 0.5, 0.2);
         for id in MediumId::all() {
             let specimen = Specimen::new(id.medium(), albedo);
             for tier in Tier::ALL {
                 let at = |theta_i, theta_o| specimen.at(tier, &Pair([theta_i, 0.0, theta_o, 0.0]));
-                assert_eq!(at(45.0, 0.0).is_some(), tier.is_shown(), "{tier}");
                 for (theta_i, theta_o) in [(0.0, 0.0), (45.0, 0.0), (90.0, 90.0), (90.0, 0.0)] {
-                    if let Some(sample) = at(theta_i, theta_o) {
-                        assert!(
-                            sample.f.is_finite() && sample.f.min_element() >= 0.0,
-                            "{tier}"
-                        );
-                    }
+                    let sample = at(theta_i, theta_o);
+                    let sound = sample.f.is_finite() && sample.f.min_element() >= 0.0;
+                    assert!(sound, "{tier}");
                     let through = at(theta_i, 180.0 - theta_i.min(89.0));
-                    assert!(
-                        through.is_none_or(|sample| sample == Sample::default()),
-                        "{tier}"
-                    );
+                    assert_eq!(through.f.max_element() > 0.0, tier == Tier::Study, "{tier}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn unscattered_light_meets_only_the_eye_opposite() {
+        let laid = "laid".parse::<MediumId>().expect("laid paper");
+        let specimen = Specimen::new(laid.medium(), DVec3::splat(0.8));
+        let at = |pair| specimen.at(Tier::Study, &Pair(pair)).ballistic.x;
+        assert!(at([0.0, 0.0, 180.0, 0.0]) > 0.0);
+        assert!(at([30.0, 20.0, 150.0, 200.0]) > 0.0);
+        assert_eq!(at([30.0, 20.0, 150.0, 210.0]), 0.0);
+        assert_eq!(at([0.0, 0.0, 0.0, 0.0]), 0.0);
     }
 }

@@ -80,28 +80,29 @@ impl Film {
         }
         film
     }
+}
 
-    /// τ per channel from the share `x` of the bare paper's albedo that was photographed; in
-    /// [0, [`DEPTH_MAX`]], 0 where the spot is as light as the paper or lighter.
-    pub fn optical_depth(&self, x: DVec3) -> DVec3 {
-        let x = x.clamp(DVec3::splat(SHARE_MIN), DVec3::ONE);
-        let excess = horner(&self.excess, x.powf(0.5));
-        let depth = (-x.map(f64::ln) - excess) / self.capture_path;
-        depth.clamp(DVec3::ZERO, DVec3::splat(DEPTH_MAX))
-    }
+/// τ per channel from the share of the bare paper's albedo that was photographed; in
+/// [0, [`DEPTH_MAX`]], 0 where the spot is as light as the paper or lighter. `capture_path` is s0.
+pub fn optical_depth(film: &Film, capture_path: f64, share: DVec3) -> DVec3 {
+    let x = share.clamp(DVec3::splat(SHARE_MIN), DVec3::ONE);
+    let excess = horner(&film.excess, x.powf(0.5));
+    let depth = (-x.map(f64::ln) - excess) / capture_path;
+    depth.clamp(DVec3::ZERO, DVec3::splat(DEPTH_MAX))
+}
 
-    /// ρ per channel: what diffuse light from below gets back from the film and its boundary.
-    pub fn internal_reflectance(&self, x: DVec3) -> DVec3 {
-        let x = x.clamp(DVec3::ZERO, DVec3::ONE);
-        horner(&self.internal, x.powf(0.5)).clamp(DVec3::ZERO, DVec3::ONE)
-    }
+/// ρ per channel: what diffuse light from below gets back from the film and its boundary, by the
+/// share of the bare paper's albedo that was photographed.
+pub fn internal_reflectance(film: &Film, share: DVec3) -> DVec3 {
+    let x = share.clamp(DVec3::ZERO, DVec3::ONE);
+    horner(&film.internal, x.powf(0.5)).clamp(DVec3::ZERO, DVec3::ONE)
+}
 
-    /// The share of diffuse light from outside that crosses a film of depth `tau`.
-    pub fn diffuse_share(&self, tau: DVec3) -> DVec3 {
-        let w = tau / (1.0 + tau);
-        let [a, b, c, d] = self.diffuse_path;
-        (-tau * (a + w * (b + w * (c + w * d)))).exp()
-    }
+/// The share of diffuse light from outside that crosses a film of depth `tau`.
+pub fn diffuse_share(film: &Film, tau: DVec3) -> DVec3 {
+    let w = tau / (1.0 + tau);
+    let [a, b, c, d] = film.diffuse_path;
+    (-tau * (a + w * (b + w * (c + w * d)))).exp()
 }
 
 /// e^(−τ(1/μi′ + 1/μo′ − s0)): what a film of depth `tau` does at these inner cosines beyond
@@ -219,9 +220,9 @@ mod tests {
             let film = Film::new(N, R_I, DVec3::splat(r_b));
             for tau in [0.0, 1e-4, 1e-3, 0.05, 0.3, 1.0, 2.0, 4.0, 8.0] {
                 let x = share(tau, r_b);
-                let found = film.optical_depth(DVec3::splat(x)).x;
+                let found = optical_depth(&film, film.capture_path, DVec3::splat(x)).x;
                 assert!((found - tau).abs() < DEPTH_FIT, "{r_b} {tau}: {found}");
-                let rho = film.internal_reflectance(DVec3::splat(x)).x;
+                let rho = internal_reflectance(&film, DVec3::splat(x)).x;
                 let exact = Internal::new(N, R_I).reflectance(tau);
                 assert!((rho - exact).abs() < 2e-3, "{r_b} {tau}: {rho} {exact}");
             }
@@ -231,16 +232,21 @@ mod tests {
     #[test]
     fn bare_paper_and_what_is_lighter_carry_no_ink() {
         let film = Film::new(N, R_I, DVec3::new(0.9, 0.8, 0.6));
-        assert!(film.optical_depth(DVec3::ONE).max_element() < DEPTH_FIT);
-        assert!(film.optical_depth(DVec3::splat(7.0)).max_element() < DEPTH_FIT);
+        assert!(optical_depth(&film, film.capture_path, DVec3::ONE).max_element() < DEPTH_FIT);
         assert!(
-            (film.internal_reflectance(DVec3::ONE) - R_I)
+            optical_depth(&film, film.capture_path, DVec3::splat(7.0)).max_element() < DEPTH_FIT
+        );
+        assert!(
+            (internal_reflectance(&film, DVec3::ONE) - R_I)
                 .abs()
                 .max_element()
                 < 1e-3
         );
         for x in [0.0, -1.0, 1e-300] {
-            assert_eq!(film.optical_depth(DVec3::splat(x)), DVec3::splat(DEPTH_MAX));
+            assert_eq!(
+                optical_depth(&film, film.capture_path, DVec3::splat(x)),
+                DVec3::splat(DEPTH_MAX)
+            );
         }
     }
 
@@ -255,7 +261,7 @@ mod tests {
                 all += weight;
                 lit += weight * (-tau / inner_cosine(mu, N)).exp();
             }
-            let fitted = film.diffuse_share(DVec3::splat(tau)).x;
+            let fitted = diffuse_share(&film, DVec3::splat(tau)).x;
             // Of the light that falls on the film.
             assert!((fitted - lit / all).abs() < SHARE_FIT, "{tau}: {fitted}");
         }

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::{
     fresnel::fresnel_conductor,
-    ink::{Film, beyond_capture, capture_path, inner_cosine},
+    ink::{Film, beyond_capture, capture_path, diffuse_share, inner_cosine},
     microfacet::{MU_MIN, d_ggx, v_smith},
     quadrature::gauss_legendre,
     slab::{Body, Phase, Slab},
@@ -60,9 +60,9 @@ pub struct Through {
 pub struct Particle {
     /// n + ik per channel.
     pub n: DVec3,
-    pub k: DVec3,
     /// GGX roughness of what they form.
     pub alpha: f64,
+    pub k: DVec3,
     /// Share of a spot that they cover, in [0, 1].
     pub covered: f64,
 }
@@ -127,16 +127,19 @@ pub fn crossing(r: DVec3, t: DVec3, rho_f: DVec3, rho_b: DVec3, eta: f64) -> DVe
     t / (eta * eta * passes.max(DVec3::splat(1e-6)))
 }
 
-/// Henyey & Greenstein's two-lobe phase function in sr⁻¹ at the cosine of the deflection.
-pub fn phase_function(phase: &Phase, cos_deflection: f64) -> f64 {
-    let lobe = |g: f64| {
-        // 1 + g² − 2g cosΘ, which would cancel in the lobe's peak.
-        let narrow = 1.0 - g.abs();
-        let d = (narrow * narrow + 2.0 * (g.abs() - g * cos_deflection)).max(1e-6);
-        (1.0 - g * g) / (4.0 * PI * d * d.sqrt())
-    };
-    phase.forward_share * lobe(phase.g_forward)
-        + (1.0 - phase.forward_share) * lobe(phase.g_backward)
+/// Henyey & Greenstein's phase function in sr⁻¹ at the cosine of the deflection.
+pub fn phase_lobe(g: f64, cos_deflection: f64) -> f64 {
+    // 1 + g² − 2g cosΘ, which would cancel in the lobe's peak.
+    let narrow = 1.0 - g.abs();
+    let d = (narrow * narrow + 2.0 * (g.abs() - g * cos_deflection)).max(1e-6);
+    (1.0 - g * g) / (4.0 * PI * d * d.sqrt())
+}
+
+/// Both lobes.
+pub fn phase_function(split: &Split, cos_deflection: f64) -> f64 {
+    let phase = &split.phase;
+    phase.forward_share * phase_lobe(phase.g_forward, cos_deflection)
+        + (1.0 - phase.forward_share) * phase_lobe(phase.g_backward, cos_deflection)
 }
 
 /// q = p(Θ′)(1 − e^(−σt d(1/μi′ + 1/μo′)))/(μi′ + μo′), `l_dot_v` the cosine between the
@@ -147,7 +150,7 @@ pub fn single_scatter(split: &Split, eta: f64, g: &Facing, inner_i: f64, inner_o
     // Light goes down along −l′ and comes up along v′.
     let cos_deflection = (-tangential - inner_i * inner_o).clamp(-1.0, 1.0);
     let left = -(-split.depth * (1.0 / inner_i + 1.0 / inner_o)).exp_m1();
-    phase_function(&split.phase, cos_deflection) * left / (inner_i + inner_o)
+    phase_function(split, cos_deflection) * left / (inner_i + inner_o)
 }
 
 impl Split {
@@ -235,13 +238,13 @@ pub fn brdf_particles(shares: &Shares, particle: &Particle, g: &Facing) -> DVec3
 }
 
 /// What a spot's photographed albedo is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shares {
     /// Diffuse albedo of the paper between particles, and of the particles.
     pub paper: DVec3,
-    pub particles: DVec3,
     /// Strength of the particles' lobe, in [0, covered].
     pub gloss: f64,
+    pub particles: DVec3,
 }
 
 /// Splits the photograph of a spot between paper, `bare` where nothing lies on it, and
@@ -290,26 +293,25 @@ pub fn particle_lobe(particle: &Particle, g: &Facing) -> DVec3 {
 pub struct Seen {
     /// τ of the side that is seen, and of the other.
     pub depth_f: DVec3,
+    /// Transmittance of the spot's paper over that of the sheet: laid lines, watermark.
+    pub clear: f64,
     pub depth_b: DVec3,
     /// ρ of both.
     pub rho_f: DVec3,
     pub rho_b: DVec3,
-    /// Transmittance of the spot's paper over that of the sheet: laid lines, watermark.
-    pub clear: f64,
 }
 
-/// What crosses a spot.
-fn spot_crossing(through: &Through, seen: &Seen, eta: f64) -> DVec3 {
-    let (r, t) = spot_body(through, seen.clear);
-    crossing(r, t, seen.rho_f, seen.rho_b, eta)
-}
-
-/// R0 and T0 of a spot that is `clear` times as transparent as the sheet: what crosses more is
+/// T0 of a spot that is `clear` times as transparent as the sheet: what crosses more is
 /// reflected less.
-pub fn spot_body(through: &Through, clear: f64) -> (DVec3, DVec3) {
-    let all = through.reflected + through.transmitted;
-    let transmitted = (through.transmitted * clear).min(all);
-    (all - transmitted, transmitted)
+pub fn spot_transmitted(through: &Through, clear: f64) -> DVec3 {
+    (through.transmitted * clear).min(through.reflected + through.transmitted)
+}
+
+/// [`crossing`] of a spot.
+pub fn spot_crossing(through: &Through, seen: &Seen, eta: f64) -> DVec3 {
+    let t = spot_transmitted(through, seen.clear);
+    let r = through.reflected + through.transmitted - t;
+    crossing(r, t, seen.rho_f, seen.rho_b, eta)
 }
 
 /// Share of the radiance of an even light table behind the sheet that an eye at cosine `mu_o`
@@ -326,7 +328,7 @@ pub fn through_study(
     let inner_o = inner_cosine(mu_o.max(MU_MIN), eta);
     let front = at_o.t * (-seen.depth_f / inner_o).exp();
     let scattered =
-        spot_crossing(through, seen, eta) * film.diffuse_share(seen.depth_b) * mean.t_mean;
+        spot_crossing(through, seen, eta) * diffuse_share(film, seen.depth_b) * mean.t_mean;
     let straight = at_o.t * (-(seen.depth_b + through.ballistic) / inner_o).exp();
     front * (scattered + straight)
 }

@@ -170,6 +170,8 @@ impl Row {
             let one = if i == 0 { 1.0 } else { 0.0 };
             one - specular * (single[i] + f_ms * lost[i])
         });
+        let lost_nodes = chebyshev::<LOST_TERMS>();
+        let lost = through(&lost_nodes, &lost_nodes.map(|x| polynomial(&lost, x)));
         let oblique = polynomial(&t, OBLIQUE.sqrt());
         let capture = 1.0 / (oblique * polynomial(&t, 1.0));
         let mean = InterfaceMean {
@@ -178,8 +180,6 @@ impl Row {
             capture,
             floor: PI * compensation * polynomial(&lost, OBLIQUE.sqrt()) * polynomial(&lost, 1.0),
         };
-        let lost_nodes = chebyshev::<LOST_TERMS>();
-        let lost = through(&lost_nodes, &lost_nodes.map(|x| polynomial(&lost, x)));
         Self { t, lost, mean }
     }
 }

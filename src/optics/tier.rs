@@ -195,10 +195,10 @@ pub fn capture_floor(s: &Surface, mean: &InterfaceMean) -> f64 {
 /// photograph, and no higher than a sheet that gives back all light can photograph, 1/(t̄·capture).
 /// A spot darker than the surface's own reflection has none.
 pub fn albedo_of(s: &Surface, mean: &InterfaceMean) -> DVec3 {
-    (s.albedo - capture_floor(s, mean)).clamp(
-        DVec3::ZERO,
-        DVec3::splat(1.0 / (mean.t_mean * mean.capture)),
-    )
+    // Colours outside sRGB have negative channels, which are kept.
+    (s.albedo - capture_floor(s, mean))
+        .max(s.albedo.min(DVec3::ZERO))
+        .min(DVec3::splat(1.0 / (mean.t_mean * mean.capture)))
 }
 
 /// The gallery tier: what the interface reflects, the diffuser underneath does not get, on the

@@ -196,7 +196,6 @@ fn what_is_not_shown_yet_is_named() {
     assert_eq!(
         read(FULL).not_shown_yet,
         [
-            "Drawing \"landscape\": transmission is not shown yet.",
             "Drawing \"landscape\": media maps do not change the picture yet.",
             "Drawing \"landscape\": thickness_um of the paper does not change the picture yet.",
             "Drawing \"landscape\": chain_lines_mm of the paper does not change the picture yet.",

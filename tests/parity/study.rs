@@ -5,6 +5,7 @@ use crate::interfaces::words;
 use recto::{
     optics::{
         fresnel::fresnel_conductor,
+        ink::{internal_reflectance, optical_depth},
         microfacet::{d_ggx_anisotropic, v_smith_anisotropic},
         slab::{Phase, Slab},
         study::{
@@ -166,12 +167,12 @@ fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVe
         albedo: front,
         ..*paper
     };
-    let depth = study.film.optical_depth(front) * x[24];
+    let depth = optical_depth(&study.film, study.film.capture_path, front) * x[24];
     let seen = Seen {
         depth_f: depth,
-        depth_b: study.film.optical_depth(back),
-        rho_f: study.film.internal_reflectance(front),
-        rho_b: study.film.internal_reflectance(back),
+        depth_b: optical_depth(&study.film, study.film.capture_path, back),
+        rho_f: internal_reflectance(&study.film, front),
+        rho_b: internal_reflectance(&study.film, back),
         clear: x[22],
     };
     let shares = particle_shares(&s, mean, study.bare, &particle);
