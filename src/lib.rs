@@ -6,7 +6,7 @@
 //! |---|---|
 //! | [`units`], [`colour`] | quantities with their unit; encoded and linear colour, CIELAB, lamps' white |
 //! | [`optics`] | what paper, ink and lamps do with light, in f64; twins in `shaders/paper_bsdf.wgsl` |
-//! | [`reference`] | the judge: the same light by a random walk, with mean and variance |
+//! | [`mod@reference`] | the judge: the same light by a random walk, with mean and variance |
 //! | [`maps`] | picture files → mip chains, each kind filtered in its own way; files written whole |
 //! | [`manifest`] | `exhibit.toml` → a validated [`Exhibit`](manifest::Exhibit), or every fault at once |
 //! | [`needs`] | what a scene requires and why: terms, maps, sides |
