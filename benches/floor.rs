@@ -160,11 +160,12 @@ enum Case {
 }
 
 impl Case {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
         Self::Floor,
         Self::Tier(Tier::Lambert),
         Self::Tier(Tier::Draft),
         Self::Tier(Tier::Gallery),
+        Self::Tier(Tier::Study),
         Self::Standard,
     ];
 
