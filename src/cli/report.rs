@@ -2,7 +2,7 @@
 //! takes, what anchors the exposure, and where maps and constants come from.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     f64::consts::PI,
     fmt::{self, Display},
     path::{Path, PathBuf},
@@ -226,6 +226,17 @@ fn sources(exhibit: &Exhibit) -> Vec<SourceReport> {
             paper.kind, paper.thickness, paper.roughness, paper.index
         );
         all.push(report(constants, paper.source));
+        let media: BTreeSet<usize> = drawing
+            .media_maps()
+            .flat_map(|map| map.content.media())
+            .collect();
+        all.extend(media.into_iter().map(|medium| {
+            let medium = &exhibit.media[medium];
+            report(
+                format!("{} ({})", medium.name, medium.origin),
+                medium.source,
+            )
+        }));
         // One file may serve several states; what is said of it last holds.
         let files: BTreeMap<PathBuf, Source> = drawing
             .maps()

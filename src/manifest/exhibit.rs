@@ -14,7 +14,10 @@ use serde::Serialize;
 
 use crate::{
     maps::{ColourEncoding, ColourMapName, NormalY},
-    optics::{medium::MediumId, photometry::Photometry},
+    optics::{
+        medium::{Matter, MediumKind},
+        photometry::Photometry,
+    },
     units::{Candela, Degrees, Kelvin, Lux, Micrometres, Millimetres, Nits},
 };
 
@@ -31,6 +34,8 @@ pub struct Exhibit {
     /// Never empty.
     pub drawings: Vec<Drawing>,
     pub lamps: Vec<Lamp>,
+    /// Those of the catalogue in its order, then the manifest's own.
+    pub media: Vec<ResolvedMedium>,
     /// Never empty: a manifest without scenes gets one of each drawing's recto.
     pub scenes: Vec<Scene>,
     pub tours: Vec<Tour>,
@@ -79,10 +84,25 @@ pub struct Drawing {
     pub hotspots: Vec<Hotspot>,
 }
 
+/// A medium with the constants that hold in this exhibit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResolvedMedium {
+    pub name: String,
+    pub kind: MediumKind,
+    pub matter: Matter,
+    /// Of the constants that the manifest gives; `Assumed` where it gives none.
+    pub source: Source,
+    /// Where those of the catalogue come from, in words.
+    pub origin: &'static str,
+    /// Whether the manifest gives its albedo, which otherwise is the catalogue's.
+    pub albedo_given: bool,
+}
+
 /// What the sheet is made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paper {
-    pub kind: MediumId,
+    /// The name of its kind, as in [`Exhibit::media`].
+    pub kind: String,
     pub thickness: Micrometres,
     /// Distance between chain lines, for laid paper.
     pub chain_lines: Option<Millimetres>,
@@ -92,6 +112,25 @@ pub struct Paper {
     pub index: f64,
     /// Strength of the specular lobe, 0 (off) to 1 (physical).
     pub specular: f64,
+    /// Of the bare sheet as photographed at 45°/0°, linear sRGB in [0, 1]; `None` where it is to
+    /// be estimated from the picture.
+    pub albedo: Option<[f64; 3]>,
+    /// σs in mm⁻¹, > 0.
+    pub scattering_per_mm: f64,
+    /// Share of the phase function's forward lobe, in [0, 1].
+    pub forward_share: f64,
+    /// Mean cosine of the forward lobe, in [0, .99].
+    pub g_forward: f64,
+    /// Mean cosine of the backward lobe, in [−.99, 0].
+    pub g_backward: f64,
+    /// Strength of the retro-reflective lobe, in [0, 1].
+    pub retro: f64,
+    /// Strength of the sheen lobe, in [0, 1].
+    pub sheen: f64,
+    /// Of the specular lobe, in [0, 1].
+    pub anisotropy: f64,
+    /// Direction of the lobe's longer axis, from the side's x axis anticlockwise.
+    pub anisotropy_angle: Degrees,
     pub source: Source,
 }
 
@@ -182,10 +221,21 @@ pub struct MediaMap {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum MediaContent {
-    /// 8-bit sRGB colours in the file, each a medium; any other colour is bare paper.
-    Legend(Vec<([u8; 3], MediumId)>),
+    /// 8-bit sRGB colours in the file, each a medium by its index in [`Exhibit::media`]; any other
+    /// colour is bare paper.
+    Legend(Vec<([u8; 3], usize)>),
     /// One medium for each channel of the file in its order; values are coverage.
-    Weights(Vec<MediumId>),
+    Weights(Vec<usize>),
+}
+
+impl MediaContent {
+    /// The media of its channels, as [`crate::maps`] loads them: indices in [`Exhibit::media`].
+    pub fn media(&self) -> Vec<usize> {
+        match self {
+            Self::Legend(legend) => legend.iter().map(|(_, medium)| *medium).collect(),
+            Self::Weights(media) => media.clone(),
+        }
+    }
 }
 
 /// A dated state of conservation: maps that replace those of the sides.

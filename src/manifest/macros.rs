@@ -1,9 +1,10 @@
 //! Each of these declares a part of the manifest once, and gives plain data, decoding with
 //! faults, and the JSON Schema.
 
-/// Numbers with a range: `Name = min ..= max, "unit";`.
+/// Numbers with a range: `Name = min ..= max, "unit";`, and a reason where the range is one of
+/// physics: `Name = min ..= max, "unit", "reason";`.
 macro_rules! number {
-    ($($(#[doc = $doc:literal])+ $name:ident = $min:literal ..= $max:literal, $unit:literal;)*) => {$(
+    ($($(#[doc = $doc:literal])+ $name:ident = $min:literal ..= $max:literal, $unit:literal $(, $reason:literal)?;)*) => {$(
         $(#[doc = $doc])+
         #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, serde::Serialize)]
         #[serde(transparent)]
@@ -18,8 +19,17 @@ macro_rules! number {
                 node: &$crate::manifest::decode::Node<'_>,
                 report: &mut $crate::manifest::decode::Report<'_>,
             ) -> Option<Self> {
-                $crate::manifest::raw::values::decode_number(node, $min, $max, $unit, report)
-                    .map(Self)
+                $crate::manifest::raw::values::decode_number(
+                    node,
+                    $crate::manifest::raw::values::Range {
+                        min: $min,
+                        max: $max,
+                        unit: $unit,
+                        reason: concat!($($reason)?),
+                    },
+                    report,
+                )
+                .map(Self)
             }
         }
 

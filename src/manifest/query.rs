@@ -8,8 +8,8 @@ use super::{
     decode::Pattern,
     document::{self, Document, Words},
     exhibit::{
-        Camera, Drawing, Exhibit, HeightMap, MapFile, MediaContent, OverlayKind, Scene, Side,
-        SideName, SidePatch, State, Surface, Wording,
+        Camera, Drawing, Exhibit, HeightMap, MapFile, MediaContent, MediaMap, OverlayKind, Scene,
+        Side, SideName, SidePatch, State, Surface, Wording,
     },
     fault::{Fault, Faults, Severity, quote},
     raw::values::FilePath,
@@ -240,8 +240,8 @@ impl Drawing {
 }
 
 impl Drawing {
-    /// The pictures whose colours stand for something, with those that their legends name.
-    fn legends(&self) -> impl Iterator<Item = (&MapFile, Vec<[u8; 3]>)> {
+    /// The media maps of both sides in every state.
+    pub fn media_maps(&self) -> impl Iterator<Item = &MediaMap> {
         let sides = [Some(&self.recto), self.verso.as_ref()]
             .into_iter()
             .flatten()
@@ -251,7 +251,12 @@ impl Drawing {
             .iter()
             .flat_map(|state| [&state.recto, &state.verso])
             .flat_map(|patch| patch.media.iter().flatten());
-        let media = sides.chain(patches).filter_map(|map| match &map.content {
+        sides.chain(patches)
+    }
+
+    /// The pictures whose colours stand for something, with those that their legends name.
+    fn legends(&self) -> impl Iterator<Item = (&MapFile, Vec<[u8; 3]>)> {
+        let media = self.media_maps().filter_map(|map| match &map.content {
             MediaContent::Legend(legend) => {
                 Some((&map.file, legend.iter().map(|entry| entry.0).collect()))
             }

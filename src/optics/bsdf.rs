@@ -78,8 +78,8 @@ const OPPOSITE: f64 = 1e-6;
 impl Specimen {
     /// `medium` where it photographs with this `albedo` (linear sRGB, each in [0, 1]).
     pub fn new(medium: &Medium, albedo: DVec3) -> Self {
-        let surface = Surface::new(albedo, medium.roughness, medium.index, 1.0);
-        let interface = InterfaceTable::at_roughness(surface.alpha, medium.index, 1.0);
+        let surface = Surface::new(albedo, medium.roughness(), medium.index(), 1.0);
+        let interface = InterfaceTable::at_roughness(surface.alpha, medium.index(), 1.0);
         let bare = match medium.kind {
             MediumKind::Paper => surface,
             MediumKind::Drawn => Surface {

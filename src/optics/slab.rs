@@ -5,7 +5,8 @@
 
 use crate::units::Micrometres;
 
-const UM_PER_MM: f64 = 1000.0;
+/// Micrometres in a millimetre.
+pub const UM_PER_MM: f64 = 1000.0;
 
 /// A slab of one colour channel.
 #[derive(Clone, Copy, Debug, PartialEq)]

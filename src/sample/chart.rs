@@ -63,7 +63,8 @@ const fn cover(medium: &'static str, colour: [f32; 3], roughness: f32, height_um
     }
 }
 
-/// The drawn media of the catalogue in its order, by name as manifests use it.
+/// The drawn media of the catalogue in its order, by name as manifests use it; of the recipes of
+/// iron-gall ink the balanced one, aged.
 const ROWS: [Row; 13] = [
     film("iron-gall-ink", [2.3, 2.7, 3.1], 0.35, 10.0),
     film("wash", [0.55, 0.95, 1.5], 0.5, 1.0),
@@ -233,12 +234,18 @@ mod tests {
     use super::*;
     use crate::optics::medium::{MediumId, MediumKind};
 
+    /// Recipes and ages of one ink, and a colour of one ground, have no row of their own.
+    fn is_variety(name: &str) -> bool {
+        name.starts_with("iron-gall-ink-") || name == "tinted-ground"
+    }
+
     #[test]
     fn every_drawn_medium_of_the_catalogue_has_its_row() {
         let catalogue: Vec<&str> = MediumId::all()
             .map(MediumId::medium)
             .filter(|medium| medium.kind == MediumKind::Drawn)
             .map(|medium| medium.name)
+            .filter(|name| !is_variety(name))
             .collect();
         assert_eq!(catalogue, ROWS.map(|row| row.medium));
     }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     manifest::{
-        exhibit::{Drawing, SideName},
+        exhibit::{Drawing, Paper, SideName},
         lighting::Lighting,
     },
     needs::{MapUse, Needs, SideNeeds},
@@ -19,7 +19,7 @@ use crate::{
         fresnel::normal_reflectance,
         microfacet::ALPHA_MIN,
         photometry::Photometry,
-        slab::Slab,
+        slab::{Phase, Slab, UM_PER_MM},
         study::Study,
         table::InterfaceTable,
         tier::{self, Tier, albedo_of},
@@ -228,14 +228,14 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
             _ => {}
         }
     }
-    let [seen, other] = bare.map(surface);
+    let [seen, other] = bare.map(|of_picture| surface(paper.albedo.unwrap_or(of_picture)));
     uniform.f_capture = seen.f_capture as f32;
     uniform.lit_bare = seen.albedo.as_vec3();
     uniform.other_bare = other.albedo.as_vec3();
     if side.terms.tier.is_coupled() || side.terms.transmission {
         let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
         let mean = here.mean_at(paper.roughness);
-        let study = Study::new(&seen, &mean, Slab::rag_paper(paper.thickness));
+        let study = Study::new(&seen, &mean, slab(paper));
         uniform.set_study(&study);
         if side.terms.tier.is_coupled() {
             uniform.other_bare = albedo_of(&other, &mean).max(DVec3::splat(1e-3)).as_vec3();
@@ -272,6 +272,20 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
         }
     }
     uniform
+}
+
+/// The sheet's body; its absorption follows from its albedo.
+fn slab(paper: &Paper) -> Slab {
+    Slab {
+        scattering: paper.scattering_per_mm,
+        absorption: 0.0,
+        thickness: paper.thickness.0 / UM_PER_MM,
+        phase: Phase {
+            forward_share: paper.forward_share,
+            g_forward: paper.g_forward,
+            g_backward: paper.g_backward,
+        },
+    }
 }
 
 fn bound(side: &SideNeeds, images: Vec<Handle<Image>>) -> PaperMaps {

@@ -8,6 +8,7 @@ use recto::{
         CompareMode, Exhibit, FlipAxis, LampColour, LampKind, MediaContent, Member, OverlayKind,
         SideName, Source, Surface, check_shape, create,
     },
+    optics::medium::{Matter, MediumId, Preset},
     units::{Candela, Degrees, Kelvin, Lux, Nits},
 };
 
@@ -165,6 +166,88 @@ fn every_key_arrives() {
 }
 
 #[test]
+fn media_have_the_constants_that_the_manifest_gives_and_otherwise_the_presets() {
+    let exhibit = read(FULL);
+    let medium = |name: &str| exhibit.media.iter().find(|m| m.name == name).unwrap();
+    let Matter::Particles(silver) = medium("silver-point").matter else {
+        panic!("{:?}", medium("silver-point"))
+    };
+    assert_eq!(
+        (silver.n, silver.k, silver.roughness),
+        ([0.1, 0.12, 0.2], [4.2, 3.5, 2.6], 0.4)
+    );
+    // #60 is 96/255 of the sRGB curve: ((96/255 + .055)/1.055)^2.4 in linear light.
+    for albedo in silver.albedo {
+        close(albedo, ((96.0 / 255.0 + 0.055) / 1.055_f64).powf(2.4));
+    }
+    assert_eq!(medium("silver-point").source, Source::Measured);
+    let Matter::Film(ink) = medium("iron-gall-ink-of-leonardo").matter else {
+        panic!("{:?}", exhibit.media.last())
+    };
+    assert_eq!((ink.index, ink.depth), (1.48, [1.0, 1.5, 2.0]));
+    let Matter::Body(gouache) = medium("white-gouache").matter else {
+        panic!("{:?}", medium("white-gouache"))
+    };
+    assert_eq!(
+        (gouache.scattering_per_mm, gouache.thickness_um),
+        (500.0, 12.5)
+    );
+    // What the manifest does not give is the preset's: here the article's.
+    for id in MediumId::all() {
+        let theirs = id.of_preset(Preset::Isle2021);
+        let changed = ["silver-point", "white-gouache"].contains(&id.name());
+        assert_eq!(medium(id.name()).matter == theirs.matter, !changed, "{id}");
+    }
+    let Matter::Film(catalogue) = medium("iron-gall-ink").matter else {
+        panic!("{:?}", medium("iron-gall-ink"))
+    };
+    assert_eq!(
+        (catalogue.index, ink.roughness),
+        (1.35, catalogue.roughness)
+    );
+    // Media maps name them by their place.
+    let [first, _] = &exhibit.drawings[0].recto.media[..] else {
+        panic!("{:?}", exhibit.drawings[0].recto.media)
+    };
+    let MediaContent::Legend(legend) = &first.content else {
+        panic!("{first:?}")
+    };
+    let named: Vec<&str> = legend
+        .iter()
+        .map(|(_, medium)| exhibit.media[*medium].name.as_str())
+        .collect();
+    assert_eq!(named, ["iron-gall-ink", "lead-point"]);
+}
+
+#[test]
+fn a_papers_constants_are_its_own_then_its_mediums_then_the_catalogues() {
+    let own = read(FULL).drawings[0].paper.clone();
+    assert_eq!(own.kind, "rag");
+    assert_eq!(own.scattering_per_mm, 60.0);
+    assert_eq!(
+        [own.forward_share, own.g_forward, own.g_backward],
+        [0.8, 0.5, -0.2]
+    );
+    assert_eq!([own.retro, own.sheen, own.anisotropy], [0.1, 0.2, 0.3]);
+    assert_eq!(own.anisotropy_angle, Degrees(-45.0));
+    let [r, g, b] = own.albedo.unwrap();
+    assert!(r > g && g > b);
+    let rag = "[[medium]]\nid = \"rag\"\nbased_on = \"laid\"\nthickness_um = 90\n\
+               albedo = [0.7, 0.6, 0.5]\nroughness = 0.45\nsource = \"measured\"\n";
+    let of_medium = &read(&format!("{SMALL}paper = \"rag\"\n{rag}")).drawings[0].paper;
+    assert_eq!(of_medium.thickness.0, 90.0);
+    assert_eq!(of_medium.roughness, 0.45);
+    assert_eq!(of_medium.albedo, Some([0.7, 0.6, 0.5]));
+    assert_eq!(of_medium.source, Source::Measured);
+    let bare = &read(SMALL).drawings[0].paper;
+    assert_eq!((bare.kind.as_str(), bare.thickness.0), ("laid", 150.0));
+    // Estimated from the picture, although the catalogue has one for other uses.
+    assert_eq!(bare.albedo, None);
+    assert_eq!((bare.index, bare.scattering_per_mm), (1.5, 81.38));
+    assert_eq!([bare.retro, bare.sheen, bare.anisotropy], [0.0; 3]);
+}
+
+#[test]
 fn sound_pictures_pass_and_a_damaged_one_is_named_where_it_is_written() {
     let folder = Folder::with(FULL);
     let (exhibit, _) = Exhibit::read(&folder.exhibit).unwrap();
@@ -177,7 +260,7 @@ fn sound_pictures_pass_and_a_damaged_one_is_named_where_it_is_written() {
     assert_eq!(warnings.len(), 2, "{warnings:?}");
     assert_eq!(
         warnings[0],
-        "exhibit.toml:21:19: warning: drawing[0].recto.albedo.file: found \"recto.png\" with \
+        "exhibit.toml:22:19: warning: drawing[0].recto.albedo.file: found \"recto.png\" with \
          colours that its legend does not name: #c8beaa (200 pixels); allowed: #3b2a1a, #808080; \
          correct the colours or add them to the legend; such pixels count as bare"
     );
@@ -186,7 +269,7 @@ fn sound_pictures_pass_and_a_damaged_one_is_named_where_it_is_written() {
     let faults = exhibit.verify(exhibit.maps()).unwrap_err();
     assert_eq!(
         folder.relative(&faults.to_string()),
-        "exhibit.toml:49:16: drawing[0].state[0].recto.albedo: found \"small.png\", which is damaged \
+        "exhibit.toml:50:16: drawing[0].state[0].recto.albedo: found \"small.png\", which is damaged \
          (it ends too early); allowed: a whole file; export or copy it again"
     );
 }
@@ -197,7 +280,6 @@ fn what_is_not_shown_yet_is_named() {
         read(FULL).not_shown_yet,
         [
             "Drawing \"landscape\": media maps do not change the picture yet.",
-            "Drawing \"landscape\": thickness_um of the paper does not change the picture yet.",
             "Drawing \"landscape\": chain_lines_mm of the paper does not change the picture yet.",
             "Drawing \"landscape\": hotspots are not shown yet.",
             "Drawing \"figure\": media maps do not change the picture yet.",

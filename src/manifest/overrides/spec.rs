@@ -95,6 +95,7 @@ pub fn validated(
             drawing: List::from_iter([]),
             exhibit: optional(root, "exhibit", report),
             lamp: optional(root, "lamp", report),
+            medium: None,
             scene: None,
             tour: None,
             accuracy: None,

@@ -5,6 +5,7 @@
 //! types.
 
 pub mod lamp;
+pub mod medium;
 pub mod scene;
 pub mod values;
 
@@ -13,17 +14,21 @@ use super::{
     exhibit::{FlipAxis, SideName, Source},
     macros::{kinds, record},
 };
-use crate::maps::{ColourEncoding, ColourMapName, MAX_WEIGHTS, NormalY};
+use crate::{
+    maps::{ColourEncoding, ColourMapName, MAX_WEIGHTS, NormalY},
+    optics::medium::Preset,
+};
 pub use lamp::RawLamp;
+pub use medium::{RawAlbedo, RawMedium};
 pub use scene::{
     RawAmbient, RawCamera, RawCompare, RawExposure, RawScene, RawShownOverlay, RawStop, RawTour,
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use values::{
-    Alpha, ChainLinesMm, DateText, DeltaE, FilePath, Fraction, FrameMs, HexColour, Id, Language,
-    MediumName, OffsetMm, PaperName, PixelPx, PlaceMm, Quantity, RefractiveIndex, ReliefUm, Scale,
-    SheetMm, Text, ThicknessUm, TurnDeg,
+    Alpha, BackwardCosine, ChainLinesMm, DateText, DeltaE, FilePath, ForwardCosine, Fraction,
+    FrameMs, HexColour, Id, Language, MediumName, OffsetMm, PaperName, PixelPx, PlaceMm, Quantity,
+    RefractiveIndex, ReliefUm, Scale, ScatteringPerMm, SheetMm, Text, ThicknessUm, TurnDeg,
 };
 
 /// A text in one language, or in several by their tags.
@@ -42,6 +47,8 @@ record! {
             /// The lamps that scenes name, each below its own `[[lamp]]`. Without any, one distant
             /// lamp shines from the top left at 45°.
             lamp: List<RawLamp>,
+            /// Media with constants of their own, each below its own `[[medium]]`.
+            medium: List<RawMedium>,
             /// The views, each below its own `[[scene]]`. Without any, the recto of each drawing
             /// is one.
             scene: List<RawScene>,
@@ -66,6 +73,9 @@ record! {
             languages: List<Language, 1, 64>,
             /// What a display shows at full level, for every scene that does not say otherwise.
             exposure: RawExposure,
+            /// Whose constants the media of the catalogue have: recto, or isle-2021 for those
+            /// that an article of 2021 prints. Without it: recto.
+            optics: Preset,
         }
         rules []
     }
@@ -122,7 +132,7 @@ record! {
         optional {
             /// The paper, by its name in the catalogue. Without it: laid.
             kind: PaperName,
-            /// Thickness in µm. Without it: 150.
+            /// Thickness in µm. Without it: the catalogue's.
             thickness_um: ThicknessUm,
             /// Distance between chain lines in mm, for laid paper.
             chain_lines_mm: ChainLinesMm,
@@ -132,6 +142,25 @@ record! {
             index: RefractiveIndex,
             /// Strength of the surface's gloss, 0 (off) to 1 (physical). Without it: 1.
             specular: Fraction,
+            /// Colour of the bare paper as photographed. Without it: what the picture shows
+            /// where it is lightest.
+            albedo: RawAlbedo,
+            /// Scattering coefficient in 1/mm. Without it: the catalogue's.
+            scattering_per_mm: ScatteringPerMm,
+            /// Share of the light that is scattered forwards. Without it: the catalogue's.
+            forward_share: Fraction,
+            /// Mean cosine of what is scattered forwards. Without it: the catalogue's.
+            g_forward: ForwardCosine,
+            /// Mean cosine of what is scattered backwards. Without it: the catalogue's.
+            g_backward: BackwardCosine,
+            /// Strength of the retro-reflection, 0 (off) to 1. Without it: 0.
+            retro: Fraction,
+            /// Strength of the sheen, 0 (off) to 1. Without it: 0.
+            sheen: Fraction,
+            /// How much more the gloss spreads one way than across it, 0 to 1. Without it: 0.
+            anisotropy: Fraction,
+            /// The way it spreads more, in degrees anticlockwise from the right. Without it: 0.
+            anisotropy_deg: TurnDeg,
             /// Where these constants come from. Without it: assumed.
             source: Source,
         }

@@ -12,7 +12,7 @@ use super::super::{
 };
 use crate::{
     maps::{ColourEncoding, ColourMapName, NormalY},
-    optics::medium::{MediumId, MediumKind},
+    optics::medium::{MediumId, MediumKind, Preset},
     optics::spectrum::Illuminant,
 };
 
@@ -34,7 +34,7 @@ number! {
     /// A width of the view.
     ViewMm = 0.1 ..= 20000.0, "mm";
     /// A thickness of paper.
-    ThicknessUm = 1.0 ..= 2000.0, "µm";
+    ThicknessUm = 1.0 ..= 2000.0, "µm", "thinner is no sheet and thicker is board";
     /// A height of relief.
     ReliefUm = -100000.0 ..= 100000.0, "µm";
     /// A coordinate in a picture, from its left or top edge; pixel centres lie at halves.
@@ -42,7 +42,7 @@ number! {
     /// A roughness α of the facet distribution; no paper is smoother than a tenth.
     Alpha = 0.1 ..= 1.0, "";
     /// A refractive index.
-    RefractiveIndex = 1.0 ..= 3.0, "";
+    RefractiveIndex = 1.0 ..= 3.0, "", "light is nowhere faster than in a vacuum";
     /// A share.
     Fraction = 0.0 ..= 1.0, "";
     /// A linear display level.
@@ -85,6 +85,34 @@ number! {
     DeltaE = 0.01 ..= 100.0, "ΔE00";
     /// A time for one frame.
     FrameMs = 1.0 ..= 1000.0, "ms";
+    /// A roughness α of a drawing material.
+    MediumAlpha = 0.01 ..= 1.0, "";
+    /// A share of the light that is reflected.
+    Reflectance = 0.0 ..= 1.0, "", "nothing reflects more light than falls on it";
+    /// A scattering coefficient σs.
+    ScatteringPerMm = 0.01 ..= 10000.0, "per mm", "what scatters less is glass and nothing drawn scatters more";
+    /// A mean cosine of forward scattering.
+    ForwardCosine = 0.0 ..= 0.99, "", "a forward lobe goes forwards and at 1 straight on";
+    /// A mean cosine of backward scattering.
+    BackwardCosine = -0.99 ..= 0.0, "", "a backward lobe goes backwards and at -1 straight back";
+    /// A thickness of a layer.
+    LayerUm = 0.1 ..= 2000.0, "µm", "thinner is no layer and thicker is board";
+    /// An optical depth along the normal.
+    OpticalDepth = 0.0 ..= 20.0, "", "a film takes light away and beyond 20 all of it";
+    /// A real part of the refractive index of metal or pigment, which may be below 1.
+    ParticleIndex = 0.01 ..= 6.0, "", "no metal or pigment has another";
+    /// An imaginary part of a refractive index.
+    Extinction = 0.0 ..= 20.0, "", "below 0 matter would give light off and no metal has more";
+}
+
+/// The range of a number.
+#[derive(Clone, Copy)]
+pub(crate) struct Range {
+    pub min: f64,
+    pub max: f64,
+    pub unit: &'static str,
+    /// Why nothing else can be, where it is not just unusual; may be empty.
+    pub reason: &'static str,
 }
 
 pub(crate) fn number_allowed(min: f64, max: f64, unit: &str) -> String {
@@ -93,17 +121,23 @@ pub(crate) fn number_allowed(min: f64, max: f64, unit: &str) -> String {
         .to_owned()
 }
 
-pub(crate) fn decode_number(
-    node: &Node<'_>,
-    min: f64,
-    max: f64,
-    unit: &str,
-    report: &mut Report<'_>,
-) -> Option<f64> {
+pub(crate) fn decode_number(node: &Node<'_>, range: Range, report: &mut Report<'_>) -> Option<f64> {
+    let Range {
+        min,
+        max,
+        unit,
+        reason,
+    } = range;
+    let mut allowed = number_allowed(min, max, unit);
     let remedy = match node.number() {
         Some(number) if (min..=max).contains(&number) => return Some(number),
         Some(number) if !number.is_finite() => "write an ordinary number",
-        Some(_) => "write a number within this range",
+        Some(_) => {
+            if !reason.is_empty() {
+                allowed = format!("{allowed}, as {reason}");
+            }
+            "write a number within this range"
+        }
         None if node
             .text()
             .is_some_and(|text| text.trim().parse::<f64>().is_ok()) =>
@@ -112,7 +146,7 @@ pub(crate) fn decode_number(
         }
         None => "write a number",
     };
-    let words = Words::new(node.found(), number_allowed(min, max, unit), remedy);
+    let words = Words::new(node.found(), allowed, remedy);
     report.fault(node.trail(), words);
     None
 }
@@ -166,6 +200,7 @@ choice! {
         LedV2 = "LED-V2",
     }
     NormalY { Up = "up", Down = "down", }
+    Preset { Recto = "recto", Isle2021 = "isle-2021", }
     ColourMapName { Viridis = "viridis", Magma = "magma", Cividis = "cividis", Grey = "grey", }
 }
 
@@ -296,13 +331,15 @@ fn is_member(text: &str) -> bool {
     }
 }
 
-/// A paper of the catalogue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PaperName(pub MediumId);
+/// A paper of the catalogue, or of the manifest's own media.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct PaperName(pub Id);
 
-/// A drawing material of the catalogue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MediumName(pub MediumId);
+/// A drawing material of the catalogue, or of the manifest's own media.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct MediumName(pub Id);
 
 macro_rules! catalogue_name {
     ($($name:ident of $kind:ident;)*) => {$(
@@ -312,21 +349,16 @@ macro_rules! catalogue_name {
             }
         }
 
-        impl Serialize for $name {
-            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                serializer.serialize_str(self.0.name())
-            }
-        }
-
         impl Decode for $name {
             fn allowed() -> String {
-                quoted_list(Self::words())
+                format!("{}, or the id of a [[medium]]", quoted_list(Self::words()))
             }
 
+            // Whether there is such a medium is known when all media are.
             fn decode(node: &Node<'_>, report: &mut Report<'_>) -> Option<Self> {
-                let word = node.text().unwrap_or_default();
-                let id = word.parse().ok().filter(|id: &MediumId| id.medium().kind == MediumKind::$kind);
+                let id = node.text().and_then(Id::from_text);
                 if id.is_none() {
+                    let word = node.text().unwrap_or_default();
                     let remedy = did_you_mean(word, Self::words(), "write one of these words");
                     report.fault(node.trail(), Words::new(node.found(), Self::allowed(), remedy));
                 }
@@ -344,7 +376,13 @@ macro_rules! catalogue_name {
             }
 
             fn json_schema(_: &mut SchemaGenerator) -> Schema {
-                json_schema!({ "enum": Self::words().collect::<Vec<_>>() })
+                // The words first, for editors that complete them.
+                json_schema!({
+                    "anyOf": [
+                        { "enum": Self::words().collect::<Vec<_>>() },
+                        { "type": "string", "pattern": Id::PATTERN },
+                    ],
+                })
             }
         }
     )*};

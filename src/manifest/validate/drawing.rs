@@ -8,11 +8,11 @@ use super::{
         document::{Trail, Words},
         exhibit::{
             Drawing, FlipAxis, HeightMap, Hotspot, LegendEntry, MapFile, Overlay, OverlayKind,
-            Paper, Side, SideName, SidePatch, Source, State, Surface,
+            Side, SideName, SidePatch, Source, State, Surface,
         },
         raw::{
-            RawCategorical, RawDrawing, RawHotspot, RawOverlay, RawOverlayKind, RawPaper, RawSide,
-            RawState, RawSurface, values::PaperName,
+            RawCategorical, RawDrawing, RawHotspot, RawOverlay, RawOverlayKind, RawSide, RawState,
+            RawSurface,
         },
     },
     Validator,
@@ -20,14 +20,6 @@ use super::{
     placement::Placement,
     side::{Named, no_maps},
 };
-use crate::{
-    optics::medium::MediumId,
-    units::{Micrometres, Millimetres},
-};
-
-/// A sheet of drawing paper where the manifest says nothing.
-const DEFAULT_PAPER: &str = "laid";
-const DEFAULT_THICKNESS_UM: f64 = 150.0;
 /// The word by which a scene asks for no state.
 pub(super) const NO_STATE: &str = "none";
 
@@ -69,10 +61,7 @@ impl Validator<'_, '_> {
             ));
         }
         if let Some(Brief::Full(paper)) = &raw.paper {
-            let constants = [
-                ("thickness_um", paper.thickness_um.is_some()),
-                ("chain_lines_mm", paper.chain_lines_mm.is_some()),
-            ];
+            let constants = [("chain_lines_mm", paper.chain_lines_mm.is_some())];
             for (key, _) in constants.iter().filter(|(_, given)| *given) {
                 self.not_shown_yet(format!(
                     "Drawing \"{id}\": {key} of the paper does not change the picture yet."
@@ -117,7 +106,7 @@ impl Validator<'_, '_> {
                 .as_ref()
                 .map_or_else(String::new, |t| t.as_str().to_owned()),
             size_mm,
-            paper: paper(raw.paper.as_ref())?,
+            paper: self.paper(raw.paper.as_ref(), &trail.key("paper"))?,
             outline,
             surface: self.surface(raw.surface.as_ref(), &trail.key("surface"), size_mm)?,
             recto: recto?,
@@ -366,34 +355,4 @@ impl DrawingFacts {
                 .collect(),
         }
     }
-}
-
-/// `None` only if the catalogue lacks the default paper.
-fn paper(raw: Option<&Brief<PaperName, RawPaper>>) -> Option<Paper> {
-    let (name, details) = match raw {
-        None => (None, None),
-        Some(Brief::Short(name)) => (Some(name.0), None),
-        Some(Brief::Full(details)) => (details.kind.map(|name| name.0), Some(details)),
-    };
-    let kind: MediumId = name.or_else(|| DEFAULT_PAPER.parse().ok())?;
-    let catalogue = kind.medium();
-    Some(Paper {
-        kind,
-        thickness: Micrometres(
-            details
-                .and_then(|d| d.thickness_um)
-                .map_or(DEFAULT_THICKNESS_UM, |um| um.0),
-        ),
-        chain_lines: details
-            .and_then(|d| d.chain_lines_mm)
-            .map(|mm| Millimetres(mm.0)),
-        roughness: details
-            .and_then(|d| d.roughness)
-            .map_or(catalogue.roughness, |a| a.0),
-        index: details
-            .and_then(|d| d.index)
-            .map_or(catalogue.index, |n| n.0),
-        specular: details.and_then(|d| d.specular).map_or(1.0, |s| s.0),
-        source: details.and_then(|d| d.source).unwrap_or(Source::Assumed),
-    })
 }

@@ -4,6 +4,7 @@
 mod drawing;
 mod files;
 mod lamp;
+mod medium;
 mod names;
 mod placement;
 mod scene;
@@ -15,7 +16,7 @@ use std::path::{Path, PathBuf};
 use super::{
     decode::Report,
     document::Trail,
-    exhibit::{Accuracy, Exhibit},
+    exhibit::{Accuracy, Exhibit, ResolvedMedium},
     raw::RawManifest,
 };
 use names::Names;
@@ -32,6 +33,10 @@ struct Validator<'r, 'd> {
     languages: Vec<String>,
     /// Whether the manifest lists its languages itself.
     languages_declared: bool,
+    /// What media maps and papers can name, in the order of [`Exhibit::media`].
+    media: Vec<ResolvedMedium>,
+    /// Whether media are missing there because they are at fault.
+    media_incomplete: bool,
     not_shown_yet: Vec<String>,
 }
 
@@ -54,6 +59,8 @@ impl<'r, 'd> Validator<'r, 'd> {
             real_folder: folder.canonicalize().unwrap_or_else(|_| folder.to_owned()),
             languages: Vec::new(),
             languages_declared: false,
+            media: Vec::new(),
+            media_incomplete: false,
             not_shown_yet: Vec::new(),
         }
     }
@@ -79,6 +86,8 @@ impl Validator<'_, '_> {
         };
         self.unique(&lamp_names, &root.key("lamp"));
         let lamps = self.lamps(raw, &root.key("lamp"));
+
+        self.media(raw, &root.key("medium"));
 
         let drawings_trail = root.key("drawing");
         let ids = raw.drawing.iter().map(|(i, drawing)| (i, &drawing.id));
@@ -111,6 +120,7 @@ impl Validator<'_, '_> {
             languages: self.languages.clone(),
             drawings: drawings.into_iter().collect::<Option<_>>()?,
             lamps: lamps?,
+            media: std::mem::take(&mut self.media),
             scenes: scenes?,
             tours: tours?,
             accuracy: Accuracy {

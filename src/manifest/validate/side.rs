@@ -327,15 +327,21 @@ impl SideMaps<'_, '_, '_, '_> {
 
     fn media_content(&mut self, raw: &RawMediaMap, trail: &Trail) -> Option<MediaContent> {
         let Some(legend) = &raw.legend else {
-            return raw
-                .weights
-                .as_ref()
-                .map(|weights: &List<_, 1, MAX_WEIGHTS>| {
-                    MediaContent::Weights(weights.iter().map(|(_, name)| name.0).collect())
-                });
+            let weights: &List<_, 1, MAX_WEIGHTS> = raw.weights.as_ref()?;
+            let trail = trail.key("weights");
+            let media: Vec<Option<usize>> = weights
+                .iter()
+                .map(|(i, name)| self.validator.drawn(&name.0, &trail.index(i)))
+                .collect();
+            return media
+                .into_iter()
+                .collect::<Option<_>>()
+                .map(MediaContent::Weights);
         };
         let mut entries = Vec::new();
         for (text, name) in &legend.0 {
+            let place = trail.key("legend").key(text.as_str());
+            let medium = self.validator.drawn(&name.0, &place);
             let colour = crate::colour::parse_hex(text.as_str())?;
             if entries.iter().any(|(earlier, _)| *earlier == colour) {
                 let words = Words::new(
@@ -343,11 +349,12 @@ impl SideMaps<'_, '_, '_, '_> {
                     "each colour once",
                     "remove one of the two",
                 );
-                let trail = trail.key("legend").key(text.as_str());
-                self.validator.report.fault(&trail, words);
+                self.validator.report.fault(&place, words);
             }
-            entries.push((colour, name.0));
+            entries.push((colour, medium));
         }
-        Some(MediaContent::Legend(entries))
+        let known = |(colour, medium): ([u8; 3], Option<usize>)| Some((colour, medium?));
+        let entries: Option<Vec<_>> = entries.into_iter().map(known).collect();
+        entries.map(MediaContent::Legend)
     }
 }
