@@ -177,7 +177,12 @@ fn signatures(text: &str, keyword: &str, open: char, close: char) -> BTreeMap<St
 }
 
 /// Functions of the twin sources that only the CPU calls.
-const CPU_ONLY: [&str; 3] = ["directional_albedo", "normal_reflectance", "polygon_form"];
+const CPU_ONLY: [&str; 4] = [
+    "directional_albedo",
+    "march",
+    "normal_reflectance",
+    "polygon_form",
+];
 /// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
 /// pixel: these stand for methods, `Light::at`, `InterfaceTable::at` and `mean_at`.
 const GPU_ONLY: [&str; 11] = [
@@ -398,6 +403,9 @@ impl Sentinel {
             clear_scale: self.f32(),
             other_place: self.map_place().0,
             transmission_place: self.map_place().0,
+            height_place: self.map_place().0,
+            height_range: self.vec2(),
+            height_texel: self.f32(),
         })
     }
 }
