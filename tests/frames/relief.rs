@@ -111,8 +111,8 @@ fn ridged() -> Fixture {
         );
     }
     Fixture::new(&text, |folder| {
-        let plain = vec![[0.5; 3]; 16];
-        save_exr_rgb(&folder.join("plain.exr"), 4, 4, &plain).expect("the albedo");
+        let plain = vec![[0.5; 3]; (HEIGHTS * HEIGHTS) as usize];
+        save_exr_rgb(&folder.join("plain.exr"), HEIGHTS, HEIGHTS, &plain).expect("the albedo");
         // An L: a millimetre to the left of the middle, and a millimetre above it.
         let low = |i: u32| !(120..128).contains(&i);
         let pixels: Vec<u16> = (0..HEIGHTS * HEIGHTS)
