@@ -177,12 +177,7 @@ fn signatures(text: &str, keyword: &str, open: char, close: char) -> BTreeMap<St
 }
 
 /// Functions of the twin sources that only the CPU calls.
-const CPU_ONLY: [&str; 4] = [
-    "directional_albedo",
-    "march",
-    "normal_reflectance",
-    "polygon_form",
-];
+const CPU_ONLY: [&str; 3] = ["directional_albedo", "normal_reflectance", "polygon_form"];
 /// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
 /// pixel: these stand for methods, `Light::at`, `InterfaceTable::at` and `mean_at`.
 const GPU_ONLY: [&str; 11] = [
@@ -533,6 +528,7 @@ fn can_occur(defined: &[&str]) -> bool {
     tiers == 1
         && (has("ALBEDO_MAP") || !(has("NORMAL_MAP") || has("ROUGHNESS_MAP")))
         && !(has("TIER_LAMBERT") && has("ROUGHNESS_MAP"))
+        && (has("TIER_STUDY") && has("NORMAL_MAP") || !has("RELIEF_SHADOWS"))
         && !(has("AREA_LAMPS") && (has("DISTANT_LAMPS") || has("TIER_DRAFT")))
 }
 

@@ -109,26 +109,29 @@ pub fn visible_over(horizon: Horizon, rise: f64) -> f64 {
     (1.0 + (rise - horizon.tangent) / (rise * horizon.softness)).clamp(0.0, 1.0)
 }
 
-/// The horizon towards a lamp of this rise. `height(t, width)` is the height at the distance `t`,
-/// averaged over `width`; `top` is the highest there is. All in mm.
-pub fn march(rise: f64, width: f64, top: f64, height: impl Fn(f64, f64) -> f64) -> Horizon {
-    let mut horizon = Horizon {
-        tangent: 0.0,
-        softness: 1.0,
-    };
-    let here = height(0.0, width);
-    let (near, reach) = (MARCH_START * width, march_reach(top - here, rise));
-    if reach < near {
-        return horizon;
+impl Horizon {
+    /// The horizon towards a lamp of this rise. `height(t, width)` is the height at the distance
+    /// `t`, averaged over `width`; `top` is the highest there is. All in mm. The shader's own
+    /// loop reads a texture.
+    pub fn marched(rise: f64, width: f64, top: f64, height: impl Fn(f64, f64) -> f64) -> Self {
+        let mut horizon = Self {
+            tangent: 0.0,
+            softness: 1.0,
+        };
+        let here = height(0.0, width);
+        let (near, reach) = (MARCH_START * width, march_reach(top - here, rise));
+        if reach < near {
+            return horizon;
+        }
+        let growth = march_growth(near, reach);
+        let mut t = near;
+        for _ in 0..MARCH_STEPS {
+            let higher = height(t, width.max(t * (growth - 1.0))) - here;
+            horizon = horizon_with(horizon, higher, t, width);
+            t *= growth;
+        }
+        horizon
     }
-    let growth = march_growth(near, reach);
-    let mut t = near;
-    for _ in 0..MARCH_STEPS {
-        let higher = height(t, width.max(t * (growth - 1.0))) - here;
-        horizon = horizon_with(horizon, higher, t, width);
-        t *= growth;
-    }
-    horizon
 }
 
 #[cfg(test)]
@@ -255,7 +258,7 @@ mod tests {
     fn visible(x: f64, rise: f64, top: f64, height: impl Fn(f64) -> f64) -> f64 {
         // Box of the width that is asked for, as a level of the map averages.
         const TAPS: u32 = 16;
-        let horizon = march(rise, TEXEL, top, |t, width| {
+        let horizon = Horizon::marched(rise, TEXEL, top, |t, width| {
             let tap = |i| x + t + width * ((f64::from(i) + 0.5) / f64::from(TAPS) - 0.5);
             (0..TAPS).map(|i| height(tap(i))).sum::<f64>() / f64::from(TAPS)
         });
