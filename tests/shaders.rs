@@ -528,7 +528,6 @@ fn can_occur(defined: &[&str]) -> bool {
     tiers == 1
         && (has("ALBEDO_MAP") || !(has("NORMAL_MAP") || has("ROUGHNESS_MAP")))
         && !(has("TIER_LAMBERT") && has("ROUGHNESS_MAP"))
-        && (has("TIER_STUDY") && has("NORMAL_MAP") || !has("RELIEF_SHADOWS"))
         && !(has("AREA_LAMPS") && (has("DISTANT_LAMPS") || has("TIER_DRAFT")))
 }
 
