@@ -576,3 +576,42 @@ fn slope_variance(length: f32) -> f32 {
 fn widened(alpha: f32, length: f32) -> f32 {
     return clamp(sqrt(alpha * alpha + slope_variance(length)), ALPHA_MIN, 1.0);
 }
+
+const MARCH_STEPS: u32 = 16u;
+const MARCH_START: f32 = 1.5;
+const REACH_MAX: f32 = 10.0;
+const RISE_MIN: f32 = 1e-4;
+
+struct Horizon {
+    tangent: f32,
+    softness: f32,
+}
+
+fn rise_of(l: vec3<f32>) -> f32 {
+    return l.z / max(length(l.xy), 1e-6);
+}
+
+fn march_reach(room: f32, rise: f32) -> f32 {
+    return min(max(room, 0.0) / max(rise, RISE_MIN), REACH_MAX);
+}
+
+fn march_growth(near: f32, reach: f32) -> f32 {
+    return pow(reach / near, 1.0 / f32(MARCH_STEPS - 1u));
+}
+
+fn horizon_with(horizon: Horizon, rise: f32, t: f32, width: f32) -> Horizon {
+    if rise > horizon.tangent * t {
+        return Horizon(rise / t, width / t);
+    }
+    return horizon;
+}
+
+fn visible_over(horizon: Horizon, rise: f32) -> f32 {
+    if rise <= 0.0 {
+        return 0.0;
+    }
+    if horizon.tangent <= rise {
+        return 1.0;
+    }
+    return clamp(1.0 + (rise - horizon.tangent) / (rise * horizon.softness), 0.0, 1.0);
+}

@@ -13,6 +13,11 @@
     mean_length, optical_depth, particle_shares, through_study, widened,
 }
 
+#ifdef RELIEF_SHADOWS
+#import "embedded://recto/paper_bsdf.wgsl"::{
+    Horizon, MARCH_START, MARCH_STEPS, horizon_with, march_growth, march_reach, rise_of, visible_over,
+}
+#endif
 #ifdef TIER_ISLE
 #import "embedded://recto/paper_baselines.wgsl"::{brdf_isle}
 #endif
@@ -103,6 +108,11 @@ struct Paper {
     clear_scale: f32,
     other_place: MapPlace,
     transmission_place: MapPlace,
+    height_place: MapPlace,
+    // Heights of black, and how much higher white is, in mm.
+    height_range: vec2<f32>,
+    // Size of a texel of the height map in mm.
+    height_texel: f32,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paper: Paper;
@@ -111,6 +121,9 @@ struct Paper {
 @group(#{MATERIAL_BIND_GROUP}) @binding(3) var normal_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(4) var roughness_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(5) var outline_map: texture_2d<f32>;
+#ifdef RELIEF_SHADOWS
+@group(#{MATERIAL_BIND_GROUP}) @binding(6) var height_map: texture_2d<f32>;
+#endif
 @group(#{MATERIAL_BIND_GROUP}) @binding(9) var transmission_map: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(10) var other_map: texture_2d<f32>;
 #ifdef IES
@@ -256,9 +269,47 @@ fn light_small(light: Light, p: vec3<f32>) -> Incidence {
     return light_punctual(light, p);
 }
 
+#ifdef RELIEF_SHADOWS
+// Height of the relief in mm, averaged over `width` mm.
+fn height_at(side: vec2<f32>, width: f32) -> f32 {
+    let level = log2(max(width / paper.height_texel, 1.0));
+    let stored = textureSampleLevel(
+        height_map, map_sampler, place_uv(paper.height_place, side), level,
+    ).x;
+    return paper.height_range.x + paper.height_range.y * stored;
+}
+
+// The horizon towards `l`, above the plane that the sheet has here, for lamps of no less `rise`.
+fn march(l: vec3<f32>, rise: f32, side: vec2<f32>, width: f32) -> Horizon {
+    var horizon = Horizon(0.0, 1.0);
+    let here = height_at(side, width);
+    let top = paper.height_range.x + max(paper.height_range.y, 0.0);
+    let near = MARCH_START * width;
+    let reach = march_reach(top - here, rise);
+    if reach < near {
+        return horizon;
+    }
+    // The side frame's y runs down.
+    let towards = vec2(l.x, -l.y) / max(length(l.xy), 1e-6);
+    let growth = march_growth(near, reach);
+    var t = near;
+    for (var i = 0u; i < MARCH_STEPS; i++) {
+        let higher = height_at(side + towards * t, max(width, t * (growth - 1.0))) - here;
+        horizon = horizon_with(horizon, higher, t, width);
+        t *= growth;
+    }
+    return horizon;
+}
+#endif
+
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
-    // Every texture is read before anything branches.
+    // Every texture is read before anything branches; only the relief's heights are read at
+    // levels of their own.
+#ifdef RELIEF_SHADOWS
+    let footprint = fwidth(in.side);
+    let width = max(paper.height_texel, max(footprint.x, footprint.y));
+#endif
     var albedo = paper.bare;
 #ifdef ALBEDO_MAP
     albedo = textureSample(albedo_map, map_sampler, map_uv(paper.albedo_place, in)).rgb;
@@ -361,6 +412,13 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let tangent = normalize(in.tangent - geometric * dot(geometric, in.tangent));
     n = tangent * n.x + cross(geometric, tangent) * n.y + geometric * n.z;
 #endif
+#ifdef RELIEF_SHADOWS
+    // Columns are the axes of the sheet's plane here.
+    var plane = mat3x3(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0));
+#ifdef CURVED
+    plane = mat3x3(tangent, cross(geometric, tangent), geometric);
+#endif
+#endif
 
 #ifdef PARALLEL_EYE
     let v = paper.eye.xyz;
@@ -433,6 +491,16 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #else
     for (var k = 0u; k < paper.lamp_count; k++) {
         let light = paper.lights[k];
+#endif
+#ifdef RELIEF_SHADOWS
+        let to_lamp = (light.place - light.near * in.local) * plane;
+        var lowest = to_lamp;
+#ifdef AREA_LAMPS
+        if light.grid + light.rings > 0u {
+            lowest.z -= abs(dot(light.half_edge_u, plane[2])) + abs(dot(light.half_edge_v, plane[2]));
+        }
+#endif
+        let horizon = march(to_lamp, rise_of(lowest), in.side, width);
 #endif
 #ifdef AREA_LAMPS
         let spokes = 4u * light.rings;
@@ -515,7 +583,11 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef TIER_OREN_NAYAR
                 let f = brdf_oren_nayar(lit, facing(n, incidence.l, v));
 #endif
+#ifdef RELIEF_SHADOWS
+                radiance += f * incidence.e * (mu_i * visible_over(horizon, rise_of(incidence.l * plane)));
+#else
                 radiance += f * incidence.e * mu_i;
+#endif
             }
 #ifdef TRANSMISSION
 #ifdef COUPLED

@@ -16,6 +16,10 @@ use crate::{
 /// From this tilt on, in degrees, a curved sheet can show its other side past its own edge.
 const BOTH_SIDES_TILT_DEG: f64 = 60.0;
 
+/// Lamps this high at the middle of the sheet, in degrees, and higher ones cast no shadows of its
+/// relief: few slopes of paper are as steep.
+const SHADOWS_BELOW_DEG: f64 = 45.0;
+
 /// The parts of the shader that a side needs: one pipeline for each distinct value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Terms {
@@ -25,6 +29,8 @@ pub struct Terms {
     /// A normal map bends the normal.
     pub normal_map: bool,
     pub roughness_map: bool,
+    /// The relief's heights are marched towards each lamp.
+    pub relief_shadows: bool,
     /// A map decides where there is paper.
     pub outline: bool,
     /// The sheet's straight edge is smoothed.
@@ -61,6 +67,8 @@ pub enum MapUse {
     /// its picture on the sheet in mm.
     NormalFromHeight(HeightMap, DVec2),
     Roughness(RoughnessMap),
+    /// For the shadows of the relief.
+    Height(HeightMap),
     Outline(MapFile),
     Transmission(MapFile),
     /// What the other side shows, for light that comes through it.
@@ -76,6 +84,7 @@ impl MapUse {
             Self::Normal(map) => &map.file,
             Self::NormalFromHeight(map, _) => &map.file,
             Self::Roughness(map) => &map.file,
+            Self::Height(map) => &map.file,
             Self::Outline(file) | Self::Transmission(file) => file,
             Self::OtherAlbedo(map) => &map.file,
             Self::Overlay(overlay) => &overlay.file,
@@ -89,6 +98,7 @@ impl MapUse {
             Self::Normal(map) => &mut map.file,
             Self::NormalFromHeight(map, _) => &mut map.file,
             Self::Roughness(map) => &mut map.file,
+            Self::Height(map) => &mut map.file,
             Self::Outline(file) | Self::Transmission(file) => file,
             Self::OtherAlbedo(map) => &mut map.file,
             Self::Overlay(overlay) => &mut overlay.file,
@@ -102,6 +112,7 @@ impl MapUse {
             Self::Normal(_) => "normal",
             Self::NormalFromHeight(..) => "normal from height",
             Self::Roughness(_) => "roughness",
+            Self::Height(_) => "height",
             Self::Outline(_) => "outline",
             Self::Transmission(_) => "transmission",
             Self::OtherAlbedo(_) => "albedo of the other side",
@@ -118,7 +129,7 @@ impl MapUse {
             | Self::Overlay(_)
             | Self::Normal(_)
             | Self::NormalFromHeight(..) => 8,
-            Self::Roughness(_) | Self::Transmission(_) => 2,
+            Self::Roughness(_) | Self::Height(_) | Self::Transmission(_) => 2,
             Self::Outline(_) => 1,
         };
         width * height * texel * 4 / 3
@@ -223,6 +234,7 @@ fn side_needs(
             say(format!("albedo from {}", side.albedo.file.path.display()));
             maps.push(MapUse::Albedo(side.albedo.clone()));
             relief(side, directional, &mut terms, &mut maps, &mut say);
+            relief_shadows(side, &shown, &mut terms, &mut maps, &mut say);
             if let Some(roughness) = &side.roughness {
                 // Their diffuse terms know of roughness too.
                 let rough_diffuse = matches!(tier, Tier::OrenNayar | Tier::Isle);
@@ -266,7 +278,10 @@ fn side_needs(
     let mut of_side = maps.iter().filter(|map| {
         !matches!(
             map,
-            MapUse::Overlay(_) | MapUse::Transmission(_) | MapUse::OtherAlbedo(_)
+            MapUse::Overlay(_)
+                | MapUse::Height(_)
+                | MapUse::Transmission(_)
+                | MapUse::OtherAlbedo(_)
         )
     });
     let first = of_side.next().map(|map| map.file().uv_from_side);
@@ -344,4 +359,41 @@ fn relief(
     } else {
         say("no relief: all light is even".into());
     }
+}
+
+/// The shadows that the relief casts on itself.
+fn relief_shadows(
+    side: &Side,
+    shown: &[&LampKind],
+    terms: &mut Terms,
+    maps: &mut Vec<MapUse>,
+    say: &mut impl FnMut(String),
+) {
+    let lowest = shown
+        .iter()
+        .filter_map(|kind| kind.elevation_deg())
+        .reduce(f64::min);
+    let Some(lowest) = lowest else { return };
+    if lowest >= SHADOWS_BELOW_DEG {
+        say(format!(
+            "no shadows of the relief: no lamp is lower than {SHADOWS_BELOW_DEG}°"
+        ));
+        return;
+    }
+    let Some(height) = &side.height else {
+        say("no shadows of the relief: it has no height map".into());
+        return;
+    };
+    if terms.tier != Tier::Study {
+        say(format!(
+            "no shadows of the relief: the {} tier casts none",
+            terms.tier
+        ));
+        return;
+    }
+    say(format!(
+        "height map, for the shadows of the relief: a lamp is {lowest:.0}° high"
+    ));
+    terms.relief_shadows = true;
+    maps.push(MapUse::Height(height.clone()));
 }

@@ -403,6 +403,9 @@ impl Sentinel {
             clear_scale: self.f32(),
             other_place: self.map_place().0,
             transmission_place: self.map_place().0,
+            height_place: self.map_place().0,
+            height_range: self.vec2(),
+            height_texel: self.f32(),
         })
     }
 }

@@ -362,6 +362,22 @@ pub enum LampKind {
 }
 
 impl LampKind {
+    /// How high it is over the middle of the sheet; `None` for a light table.
+    pub fn elevation_deg(&self) -> Option<f64> {
+        match self {
+            Self::Distant { elevation, .. } => Some(elevation.0),
+            Self::Point { position_mm, .. }
+            | Self::Spot { position_mm, .. }
+            | Self::Rectangle { position_mm, .. }
+            | Self::Disc { position_mm, .. }
+            | Self::Ies { position_mm, .. } => {
+                let away = position_mm.truncate().length();
+                Some(position_mm.z.atan2(away).to_degrees())
+            }
+            Self::LightTable { .. } => None,
+        }
+    }
+
     /// Whether it shines through the sheet from behind, and on neither side of it.
     pub fn is_behind(&self) -> bool {
         matches!(self, Self::LightTable { .. })

@@ -37,6 +37,8 @@ pub struct PaperMaps {
     pub normal: Option<Handle<Image>>,
     pub roughness: Option<Handle<Image>>,
     pub outline: Option<Handle<Image>>,
+    /// Heights of the relief, for its shadows.
+    pub height: Option<Handle<Image>>,
     pub transmission: Option<Handle<Image>>,
     /// Albedo of the other side, for light that comes through it.
     pub other: Option<Handle<Image>>,
@@ -73,6 +75,7 @@ impl PaperMaterial {
             (3, &maps.normal),
             (4, &maps.roughness),
             (5, &maps.outline),
+            (6, &maps.height),
             (9, &maps.transmission),
             (10, &maps.other),
         ];
@@ -172,7 +175,7 @@ impl AsBindGroup for PaperMaterial {
         entries.push(profiles.build(PROFILE_BINDING, ShaderStages::FRAGMENT));
         let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
         entries.extend(
-            [2, 3, 4, 5, 9, 10]
+            [2, 3, 4, 5, 6, 9, 10]
                 .into_iter()
                 .chain(overlays)
                 .map(|i| map.build(i, ShaderStages::FRAGMENT)),
@@ -239,6 +242,7 @@ impl Material for PaperMaterial {
             ("ALBEDO_MAP", albedo_map),
             ("CURVED", terms.curved),
             ("NORMAL_MAP", terms.normal_map),
+            ("RELIEF_SHADOWS", terms.relief_shadows),
             ("ROUGHNESS_MAP", terms.roughness_map),
             ("OUTLINE", terms.outline),
             ("EDGE", terms.edge),

@@ -5,7 +5,7 @@ use bevy::render::render_resource::ShaderType;
 use glam::{DAffine2, DMat4, DQuat, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 
 use crate::{
-    manifest::exhibit::{MAX_LAMPS, MAX_OVERLAYS},
+    manifest::exhibit::{HeightMap, MAX_LAMPS, MAX_OVERLAYS},
     maps::Coding,
     optics::{
         ink::{FILM_TERMS, Film},
@@ -295,9 +295,21 @@ pub struct PaperUniform {
     pub clear_scale: f32,
     pub other_place: MapPlace,
     pub transmission_place: MapPlace,
+    pub height_place: MapPlace,
+    pub height_range: Vec2,
+    pub height_texel: f32,
 }
 
 impl PaperUniform {
+    /// Says where the relief's heights lie, and how high they are.
+    pub fn set_height(&mut self, map: &HeightMap) {
+        let [low, high] = map.range_um;
+        let size = DVec2::new(map.file.size[0].into(), map.file.size[1].into());
+        self.height_place = MapPlace::new(map.file.uv_from_side);
+        self.height_range = DVec2::new(low / 1000.0, (high - low) / 1000.0).as_vec2();
+        self.height_texel = (map.file.extent_mm() / size).max_element() as f32;
+    }
+
     /// Sets eye and projection, given in the table frame, for a side whose local frame is
     /// `table_from_local`.
     pub fn set_eye(&mut self, clip_from_table: DMat4, eye: DVec4, table_from_local: DMat4) {

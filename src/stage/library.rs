@@ -278,7 +278,7 @@ fn load(map: &MapUse) -> Result<Pyramid, MapError> {
         }
         MapUse::Roughness(map) => maps::load_roughness(path, map.gloss),
         MapUse::Outline(_) => maps::load_outline(path),
-        MapUse::Transmission(_) => maps::load_height(path),
+        MapUse::Transmission(_) | MapUse::Height(_) => maps::load_height(path),
         MapUse::Overlay(overlay) => match &overlay.kind {
             OverlayKind::Categorical(legend) => {
                 let colours: Vec<[u8; 3]> = legend.iter().map(|entry| entry.colour).collect();

@@ -264,6 +264,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
             }
             MapUse::Roughness(_) => uniform.roughness_place = MapPlace::new(uv_from_side),
             MapUse::Outline(_) => uniform.outline_place = MapPlace::new(uv_from_side),
+            MapUse::Height(height) => uniform.set_height(height),
             MapUse::OtherAlbedo(_) => uniform.other_place = MapPlace::new(uv_from_side),
             MapUse::Transmission(_) => {
                 uniform.transmission_place = MapPlace::new(uv_from_side);
@@ -296,6 +297,7 @@ fn bound(side: &SideNeeds, images: Vec<Handle<Image>>) -> PaperMaps {
             MapUse::Normal(_) | MapUse::NormalFromHeight(..) => maps.normal = Some(image),
             MapUse::Roughness(_) => maps.roughness = Some(image),
             MapUse::Outline(_) => maps.outline = Some(image),
+            MapUse::Height(_) => maps.height = Some(image),
             MapUse::Transmission(_) => maps.transmission = Some(image),
             MapUse::OtherAlbedo(_) => maps.other = Some(image),
             MapUse::Overlay(_) => maps.overlays.push(image),

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use recto::{
-    maps::encode::{save_exr_rgb, save_png_rgb16},
+    maps::encode::{save_exr_rgb, save_png_grey16, save_png_rgb16},
     optics::tier::Tier,
 };
 
@@ -86,5 +86,82 @@ fn near_and_far_relief_have_one_mean_radiance() {
             let full_length = far * (1.0 + STEEP * STEEP).sqrt();
             assert!(full_length / near - 1.0 > tolerance, "the test cannot fail");
         }
+    }
+}
+
+/// Heights of the ridge's map along each edge of 32 mm: an eighth of a mm each.
+const HEIGHTS: u32 = 256;
+const RIDGE_MM: f64 = 0.2;
+/// Of the ridge's shadow, pixels in a mm.
+const ZOOM: u32 = 32;
+
+fn ridged() -> Fixture {
+    let mut text = String::from(
+        "[exhibit]\ntitle = \"Ridge\"\nexposure = { lux = 500 }\n\
+         [[drawing]]\nid = \"sheet\"\nsize_mm = [32, 32]\n\
+         [drawing.recto]\nalbedo = { file = \"plain.exr\", encoding = \"linear\" }\n\
+         height = { file = \"height.png\", range_um = [0, 200] }\n",
+    );
+    for (side, azimuth) in [("left", 180), ("top", 90)] {
+        text += &format!(
+            "[[lamp]]\nid = \"{side}\"\nkind = \"distant\"\nlux_at_sheet = 500\n\
+             elevation_deg = 15\nazimuth_deg = {azimuth}\n\
+             [[scene]]\nid = \"{side}\"\nlamps = [\"{side}\"]\n\
+             camera = {{ centre_mm = [16, 16], width_mm = 8 }}\n"
+        );
+    }
+    Fixture::new(&text, |folder| {
+        let plain = vec![[0.5; 3]; (HEIGHTS * HEIGHTS) as usize];
+        save_exr_rgb(&folder.join("plain.exr"), HEIGHTS, HEIGHTS, &plain).expect("the albedo");
+        // An L: a millimetre to the left of the middle, and a millimetre above it.
+        let low = |i: u32| !(120..128).contains(&i);
+        let pixels: Vec<u16> = (0..HEIGHTS * HEIGHTS)
+            .map(|i| {
+                let flat = low(i % HEIGHTS) && low(i / HEIGHTS);
+                if flat { 0 } else { u16::MAX }
+            })
+            .collect();
+        let path = folder.join("height.png");
+        save_png_grey16(&path, HEIGHTS, HEIGHTS, &pixels, None).expect("the heights");
+    })
+}
+
+#[test]
+fn a_ridge_shadows_the_paper_behind_it() {
+    let fixture = ridged();
+    let exhibit = fixture.exhibit();
+    let mut room = darkroom(1);
+    let size = 8 * ZOOM;
+    // A texel for the soft edge and one for the filtered foot of the ridge, in mm.
+    const STEP: f64 = 0.25;
+    let long = RIDGE_MM / 15f64.to_radians().tan();
+    for scene in &exhibit.scenes {
+        let [study, draft] = [Tier::Study, Tier::Draft]
+            .map(|tier| picture(&mut room, &exhibit, scene, tier, [size; 2]));
+        // Across the ridge that the lamp faces, where the other one does not reach.
+        let at = |along: u32| {
+            let other = 6 * ZOOM;
+            let (x, y) = match scene.id.as_str() {
+                "left" => (along, other),
+                _ => (other, along),
+            };
+            ([x, y], [x + 1, y + 1])
+        };
+        let paper = mean(&study, at(7 * ZOOM).0, at(7 * ZOOM).1);
+        // From half a texel behind the foot on: its own slope faces away.
+        let foot = 4 * ZOOM + ZOOM / 8;
+        let dark = |of: &_, i: u32| mean(of, at(i).0, at(i).1) < 0.5 * paper;
+        let shadow = (foot..7 * ZOOM).take_while(|&i| dark(&study, i)).count();
+        let length = shadow as f64 / f64::from(ZOOM) + 0.125;
+        eprintln!("{}: {length:.3} mm of {long:.3}", scene.id);
+        assert!(
+            (length - long).abs() < STEP,
+            "{}: {length}, not {long}",
+            scene.id
+        );
+        // Before the ridge, on the lamp's side, and in the draft tier there is none.
+        let before = 3 * ZOOM - ZOOM / 2;
+        assert!((mean(&study, at(before).0, at(before).1) / paper - 1.0).abs() < 1e-3);
+        assert!((foot..7 * ZOOM).all(|i| !dark(&draft, i + ZOOM / 8)));
     }
 }
