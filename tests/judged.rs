@@ -323,7 +323,7 @@ fn tiers_are_as_near_as_the_design_says() {
 
 /// OPTICS: ink albedo within 3% from τ = 0 to 4. Kept under a smooth surface.
 const INK: f64 = 0.03;
-/// Under a rough surface (α = .4) light goes through ink at other slants than through a smooth
+/// Under a rough surface (α = .4) light probably crosses ink at other slants than under a smooth
 /// one, and the study tier does not know it: the diffuse light of dark ink is too bright at a
 /// slant. OPTICS asks for [`INK`]; measured at τ = .05, .3, 1, 2: 1.2, 2.9, 5.3, 19.2% at 0° and
 /// 2.3, 11.3, 28.0, 62.9% at 60°. Deeper ink is below a thousandth of the sheet's light there.
@@ -364,7 +364,7 @@ fn light_through_the_sheet_is_what_the_judge_finds() {
     let judge = Judge::read();
     // OPTICS asks for 8% (opaque) and 15% (thin), here at normal incidence and at 60° for ink
     // on neither, the front and both sides. Missed: opaque with ink (−8.7 and −11.1% at 0°), and
-    // at 60°, where light that enters at a slant is scattered nearer to the surface and less of
+    // at 60°, probably as light that enters at a slant scatters nearer to the surface and less of
     // it crosses: opaque +14.8, +19.2, +15.0%, thin +10.4, +19.5, +28.7%.
     let bounds = [
         (OPAQUE, [[0.08, 0.09, 0.115], [0.155, 0.20, 0.155]]),
@@ -395,8 +395,8 @@ fn light_through_the_sheet_is_what_the_judge_finds() {
 /// OPTICS, "energy": lossless within 5e-3 (gallery and above).
 const LOSSLESS: f64 = 5e-3;
 /// OPTICS asks for [`LOSSLESS`] of the study tier too. Measured: +.80% on an opaque sheet at
-/// grazing light (single scattering's mean over both hemispheres is one number), and +4.85% on a
-/// thin one, whose slab already counts the light that goes straight through.
+/// grazing light, and +4.85% on a
+/// thin one, probably as its slab already counts the light that goes straight through.
 const STUDY_LOSSLESS: [f64; 2] = [8.5e-3, 0.049];
 
 #[test]
