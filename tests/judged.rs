@@ -13,12 +13,12 @@ use std::{
 use glam::DVec3;
 use recto::{
     optics::{
-        ink::inner_cosine,
+        ink::{inner_cosine, internal_reflectance, optical_depth},
         microfacet::v_smith,
         slab::{Phase as TierPhase, Slab},
         study::{
-            Particle, Seen, Split, Study, brdf_study, particle_shares, phase_function,
-            single_scatter, through_study,
+            Particle, Seen, Split, Study, brdf_study, particle_shares, phase_lobe, single_scatter,
+            through_study,
         },
         table::{InterfaceMean, InterfaceTable},
         tier::{Surface, albedo_of, brdf_gallery, brdf_gallery_specular, capture_floor, facing},
@@ -236,7 +236,11 @@ impl Side {
     }
 
     fn depth(&self, albedo: f64) -> DVec3 {
-        self.study.film.optical_depth(self.share(albedo))
+        optical_depth(
+            &self.study.film,
+            self.study.film.capture_path,
+            self.share(albedo),
+        )
     }
 
     /// Over a part of the hemisphere around z, the mean with the cosine as weight.
@@ -265,10 +269,10 @@ impl Side {
         let film = &self.study.film;
         let (x_f, x_b) = (self.share(front), self.share(back));
         let seen = Seen {
-            depth_f: film.optical_depth(x_f),
-            depth_b: film.optical_depth(x_b),
-            rho_f: film.internal_reflectance(x_f),
-            rho_b: film.internal_reflectance(x_b),
+            depth_f: optical_depth(film, film.capture_path, x_f),
+            depth_b: optical_depth(film, film.capture_path, x_b),
+            rho_f: internal_reflectance(film, x_f),
+            rho_b: internal_reflectance(film, x_b),
             clear: 1.0,
         };
         let at_o = self.table.at(mu, self.bare.alpha);
@@ -480,7 +484,8 @@ fn numbers_keep_their_sense_at_the_extremes() {
             g_backward: 0.0,
         };
         for cos in [-1.0, 1.0] {
-            let p = phase_function(&phase, cos);
+            let p = phase.forward_share * phase_lobe(phase.g_forward, cos)
+                + (1.0 - phase.forward_share) * phase_lobe(phase.g_backward, cos);
             assert!(p.is_finite() && p > 0.0, "{g_forward} {cos}: {p}");
         }
     }
