@@ -60,12 +60,12 @@ impl Validator<'_, '_> {
                 "Drawing \"{id}\": media maps do not change the picture yet."
             ));
         }
-        if let Some(Brief::Full(paper)) = &raw.paper {
-            if paper.chain_lines_mm.is_some() {
-                self.not_shown_yet(format!(
-                    "Drawing \"{id}\": chain_lines_mm of the paper does not change the picture yet."
-                ));
-            }
+        if let Some(Brief::Full(paper)) = &raw.paper
+            && paper.chain_lines_mm.is_some()
+        {
+            self.not_shown_yet(format!(
+                "Drawing \"{id}\": chain_lines_mm of the paper does not change the picture yet."
+            ));
         }
         if raw.hotspot.is_some() {
             self.not_shown_yet(format!("Drawing \"{id}\": hotspots are not shown yet."));
