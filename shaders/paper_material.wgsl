@@ -58,6 +58,15 @@ struct MapPlace {
     lit: f32,
 }
 
+// A sort of particles: n + ik and the diffuse albedo per channel.
+struct ParticleSlot {
+    n: vec3<f32>,
+    alpha: f32,
+    k: vec3<f32>,
+    spare: f32,
+    albedo: vec3<f32>,
+}
+
 struct Paper {
     clip_from_local: mat4x4<f32>,
     // Place of the eye, or the unit vector towards it (PARALLEL_EYE).
@@ -82,6 +91,9 @@ struct Paper {
     albedo_place: MapPlace,
     normal_place: MapPlace,
     roughness_place: MapPlace,
+    // Of both textures of media.
+    matter_place: MapPlace,
+    particles: array<ParticleSlot, 6>,
     outline_place: MapPlace,
     // Linear level at which a window shows a perfect diffuser (x); the rest is unused.
     level: vec4<f32>,
@@ -128,6 +140,14 @@ struct Paper {
 @group(#{MATERIAL_BIND_GROUP}) @binding(10) var other_map: texture_2d<f32>;
 #ifdef IES
 @group(#{MATERIAL_BIND_GROUP}) @binding(11) var profiles: texture_2d<f32>;
+#endif
+#ifdef MATTER
+// Shares of film, body colour, and particles of slots 0 and 1; the rest is paper.
+@group(#{MATERIAL_BIND_GROUP}) @binding(7) var matter_map: texture_2d<f32>;
+#endif
+#ifdef MATTER_MORE
+// Shares of particles of slots 2 to 5.
+@group(#{MATERIAL_BIND_GROUP}) @binding(8) var matter_more_map: texture_2d<f32>;
 #endif
 #ifdef OVERLAYS
 @group(#{MATERIAL_BIND_GROUP}) @binding(16) var overlay_map_a: texture_2d<f32>;

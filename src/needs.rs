@@ -3,6 +3,8 @@
 //! Nothing else decides what is loaded or which pipeline is specialised; `recto check
 //! --explain` prints these reasons.
 
+mod matter;
+
 use glam::DVec2;
 
 use crate::{
@@ -10,8 +12,10 @@ use crate::{
         ColourMap, Drawing, Exhibit, HeightMap, LampKind, MapFile, NormalMap, Overlay,
         RoughnessMap, Scene, Side, SideName, Surface,
     },
-    optics::tier::Tier,
+    maps::MatterSlot,
+    optics::{medium::ParticleConstants, tier::Tier},
 };
+pub use matter::MediaStack;
 
 /// From this tilt on, in degrees, a curved sheet can show its other side past its own edge.
 const BOTH_SIDES_TILT_DEG: f64 = 60.0;
@@ -31,6 +35,9 @@ pub struct Terms {
     pub roughness_map: bool,
     /// The relief's heights are marched towards each lamp.
     pub relief_shadows: bool,
+    /// How many textures tell the side's media apart: 0, 1, or 2 for more than two sorts of
+    /// particles.
+    pub matter: u32,
     /// A map decides where there is paper.
     pub outline: bool,
     /// The sheet's straight edge is smoothed.
@@ -69,6 +76,12 @@ pub enum MapUse {
     Roughness(RoughnessMap),
     /// For the shadows of the relief.
     Height(HeightMap),
+    /// Roughness from the media and that of the paper between them, where no map of it is given.
+    RoughnessOfMatter(MediaStack<Option<f64>>, f64),
+    /// Shares of film, body colour, and particles of slots 0 and 1.
+    Matter(MediaStack<MatterSlot>),
+    /// Shares of particles of slots 2 to 5.
+    MatterMore(MediaStack<MatterSlot>),
     Outline(MapFile),
     Transmission(MapFile),
     /// What the other side shows, for light that comes through it.
@@ -77,7 +90,7 @@ pub enum MapUse {
 }
 
 impl MapUse {
-    /// The file behind it.
+    /// The file behind it, the lowest of several.
     pub fn file(&self) -> &MapFile {
         match self {
             Self::Albedo(map) => &map.file,
@@ -87,6 +100,8 @@ impl MapUse {
             Self::Height(map) => &map.file,
             Self::Outline(file) | Self::Transmission(file) => file,
             Self::OtherAlbedo(map) => &map.file,
+            Self::RoughnessOfMatter(stack, _) => &stack.file,
+            Self::Matter(stack) | Self::MatterMore(stack) => &stack.file,
             Self::Overlay(overlay) => &overlay.file,
         }
     }
@@ -101,6 +116,8 @@ impl MapUse {
             Self::Height(map) => &mut map.file,
             Self::Outline(file) | Self::Transmission(file) => file,
             Self::OtherAlbedo(map) => &mut map.file,
+            Self::RoughnessOfMatter(stack, _) => &mut stack.file,
+            Self::Matter(stack) | Self::MatterMore(stack) => &mut stack.file,
             Self::Overlay(overlay) => &mut overlay.file,
         }
     }
@@ -113,6 +130,9 @@ impl MapUse {
             Self::NormalFromHeight(..) => "normal from height",
             Self::Roughness(_) => "roughness",
             Self::Height(_) => "height",
+            Self::RoughnessOfMatter(..) => "roughness from media",
+            Self::Matter(_) => "media",
+            Self::MatterMore(_) => "more media",
             Self::Outline(_) => "outline",
             Self::Transmission(_) => "transmission",
             Self::OtherAlbedo(_) => "albedo of the other side",
@@ -131,6 +151,8 @@ impl MapUse {
             | Self::NormalFromHeight(..) => 8,
             Self::Roughness(_) | Self::Height(_) | Self::Transmission(_) => 2,
             Self::Outline(_) => 1,
+            Self::Matter(_) | Self::MatterMore(_) => 4,
+            Self::RoughnessOfMatter(..) => 1,
         };
         width * height * texel * 4 / 3
     }
@@ -141,8 +163,10 @@ impl MapUse {
 pub struct SideNeeds {
     pub side: SideName,
     pub terms: Terms,
-    /// In the order of the shader's bindings; overlays last, from the lowest.
+    /// Overlays last, from the lowest.
     pub maps: Vec<MapUse>,
+    /// What its particles are made of, in the order of the matter maps' slots.
+    pub particles: Vec<ParticleConstants>,
 }
 
 /// What a scene requires.
@@ -199,6 +223,7 @@ fn side_needs(
 ) -> SideNeeds {
     let mut say = |text: String| reasons.push(format!("{}: {text}", name.word()));
     let mut maps = Vec::new();
+    let mut particles = Vec::new();
     let side = drawing.side_in_state(name, scene.state);
     let mut terms = Terms {
         tier,
@@ -246,6 +271,8 @@ fn side_needs(
                     say("no roughness map: nothing is specular".into());
                 }
             }
+            let alpha = drawing.paper.roughness;
+            particles = matter::matter(exhibit, side, alpha, &mut terms, &mut maps, &mut say);
         }
     }
     if let Some(outline) = &drawing.outline {
@@ -297,6 +324,7 @@ fn side_needs(
         side: name,
         terms,
         maps,
+        particles,
     }
 }
 

@@ -16,6 +16,8 @@ mod hostile;
 mod icc;
 #[path = "maps/levels.rs"]
 mod levels;
+#[path = "maps/matter.rs"]
+mod matter;
 #[path = "maps/paper.rs"]
 mod paper;
 #[path = "maps/registration.rs"]

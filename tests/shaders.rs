@@ -11,6 +11,7 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use recto::{
     manifest::{MAX_LAMPS, MAX_OVERLAYS},
+    maps::MAX_PARTICLES,
     optics::{
         baselines::BASE_MIN,
         ink::FILM_TERMS,
@@ -21,8 +22,8 @@ use recto::{
     sheet::{
         PAPER_BASELINES, PAPER_BSDF, PAPER_MATERIAL,
         uniform::{
-            FilmUniform, InterfaceUniform, LightUniform, MapPlace, PaperUniform, SplitUniform,
-            ThroughUniform,
+            FilmUniform, InterfaceUniform, LightUniform, MapPlace, PaperUniform, ParticleUniform,
+            SplitUniform, ThroughUniform,
         },
     },
 };
@@ -325,6 +326,16 @@ impl Sentinel {
         })
     }
 
+    fn particle(&mut self) -> (ParticleUniform, Fields) {
+        filled!(ParticleUniform {
+            n: self.vec3(),
+            alpha: self.f32(),
+            k: self.vec3(),
+            spare: self.f32(),
+            albedo: self.vec3(),
+        })
+    }
+
     fn interface(&mut self) -> (InterfaceUniform, Fields) {
         filled!(InterfaceUniform {
             t: std::array::from_fn::<_, MU_TERMS, _>(|_| self.vec4()),
@@ -386,6 +397,8 @@ impl Sentinel {
             albedo_place: self.map_place().0,
             normal_place: self.map_place().0,
             roughness_place: self.map_place().0,
+            matter_place: self.map_place().0,
+            particles: std::array::from_fn::<_, MAX_PARTICLES, _>(|_| self.particle().0),
             outline_place: self.map_place().0,
             level: self.vec4(),
             light_table: self.vec3(),
@@ -460,6 +473,7 @@ fn uniforms_lie_in_memory_as_the_shader_reads_them() {
     let light = whole(sentinel.light());
     let table = whole(sentinel.interface());
     let place = whole(sentinel.map_place());
+    let particle = whole(sentinel.particle());
     let paper = whole(sentinel.paper());
     let physics = parse(PAPER_BSDF);
     let glue = Composer::new("")
@@ -476,6 +490,7 @@ fn uniforms_lie_in_memory_as_the_shader_reads_them() {
         misread(&glue, "Light", &light),
         misread(&glue, "InterfaceTable", &table),
         misread(&glue, "MapPlace", &place),
+        misread(&glue, "ParticleSlot", &particle),
         misread(&glue, "Paper", &paper),
     ] {
         assert_eq!(faults, [""; 0]);
@@ -543,6 +558,8 @@ fn can_occur(defined: &[&str]) -> bool {
         && (has("ALBEDO_MAP") || !(has("NORMAL_MAP") || has("ROUGHNESS_MAP")))
         && !(has("TIER_LAMBERT") && has("ROUGHNESS_MAP"))
         && (has("TRANSMISSION") || !(has("TRANSMISSION_MAP") || has("OTHER_ALBEDO")))
+        && (has("ALBEDO_MAP") || !has("MATTER"))
+        && (has("MATTER") || !has("MATTER_MORE"))
         && !(has("AREA_LAMPS") && (has("DISTANT_LAMPS") || has("TIER_DRAFT")))
 }
 

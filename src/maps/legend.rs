@@ -90,7 +90,7 @@ pub fn load_media_weights(path: &Path, count: usize) -> Result<Pyramid, MapError
     Ok(finish(&raster, pyramid))
 }
 
-fn check_weights(path: &Path, what: &str, count: usize) -> Result<(), MapError> {
+pub(super) fn check_weights(path: &Path, what: &str, count: usize) -> Result<(), MapError> {
     if (1..=MAX_WEIGHTS).contains(&count) {
         return Ok(());
     }
@@ -172,7 +172,11 @@ pub fn load_overlay_continuous(path: &Path, map: ColourMapName) -> Result<Pyrami
 }
 
 /// Calls `each` with the 8-bit colour of every pixel of a row, `None` where it is transparent.
-fn for_each_colour(raster: &Raster, y: usize, mut each: impl FnMut(usize, Option<[u8; 3]>)) {
+pub(super) fn for_each_colour(
+    raster: &Raster,
+    y: usize,
+    mut each: impl FnMut(usize, Option<[u8; 3]>),
+) {
     raster.for_each_in_row(y, |x, pixel| {
         let visible = raster.alpha(pixel) >= 0.5;
         let [r, g, b, _] = pixel.map(|v| (v * 255.0 + 0.5) as u8);
@@ -186,7 +190,7 @@ fn for_each_colour(raster: &Raster, y: usize, mut each: impl FnMut(usize, Option
 }
 
 /// Where a colour stands in the legend. Neighbours are mostly alike: `last` remembers.
-fn find(
+pub(super) fn find(
     legend: &[[u8; 3]],
     colour: [u8; 3],
     last: &mut Option<([u8; 3], Option<usize>)>,

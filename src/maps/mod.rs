@@ -7,6 +7,7 @@
 //! | file → raster at full depth | `decode` |
 //! | raster → linear sRGB | `icc`, [`load_colour`] |
 //! | raster → levels for the GPU | [`Pyramid`] |
+//! | media over each other → what shows of each | [`load_matter`] |
 //! | pixels → file, whole or not at all | [`encode`] |
 //! | another picture's place on the sheet | [`registration`] |
 //!
@@ -22,6 +23,7 @@ mod icc;
 mod legend;
 mod linear;
 mod load;
+mod matter;
 mod pyramid;
 pub mod registration;
 mod slope;
@@ -39,6 +41,10 @@ pub use legend::{
 pub use load::{
     Coding, load_colour, load_height, load_normal, load_outline, load_overlay_picture,
     load_roughness, normal_coding,
+};
+pub use matter::{
+    MAX_PARTICLES, MatterPart, MatterSlot, MediaChannels, MediaLayer, load_matter,
+    load_roughness_of_matter,
 };
 pub use pyramid::{Level, Pyramid, Texels};
 pub use slope::load_normal_from_height;

@@ -36,6 +36,10 @@ pub struct PaperMaps {
     pub albedo: Option<Handle<Image>>,
     pub normal: Option<Handle<Image>>,
     pub roughness: Option<Handle<Image>>,
+    /// Shares of film, body colour, and particles of slots 0 and 1.
+    pub matter: Option<Handle<Image>>,
+    /// Shares of particles of slots 2 to 5.
+    pub matter_more: Option<Handle<Image>>,
     pub outline: Option<Handle<Image>>,
     /// Heights of the relief, for its shadows.
     pub height: Option<Handle<Image>>,
@@ -76,6 +80,8 @@ impl PaperMaterial {
             (4, &maps.roughness),
             (5, &maps.outline),
             (6, &maps.height),
+            (7, &maps.matter),
+            (8, &maps.matter_more),
             (9, &maps.transmission),
             (10, &maps.other),
         ];
@@ -175,8 +181,7 @@ impl AsBindGroup for PaperMaterial {
         entries.push(profiles.build(PROFILE_BINDING, ShaderStages::FRAGMENT));
         let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
         entries.extend(
-            [2, 3, 4, 5, 6, 9, 10]
-                .into_iter()
+            (2..=10)
                 .chain(overlays)
                 .map(|i| map.build(i, ShaderStages::FRAGMENT)),
         );
@@ -254,6 +259,8 @@ impl Material for PaperMaterial {
             ("ONE_LAMP", terms.one_lamp),
             ("PARALLEL_EYE", terms.parallel_eye),
             ("OVERLAYS", terms.overlays > 0),
+            ("MATTER", terms.matter > 0),
+            ("MATTER_MORE", terms.matter > 1),
             ("DISPLAY", display),
         ]
         .into_iter()

@@ -6,10 +6,12 @@ use glam::{DAffine2, DMat4, DQuat, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 
 use crate::{
     manifest::exhibit::{HeightMap, MAX_LAMPS, MAX_OVERLAYS},
-    maps::Coding,
+    maps::{Coding, MAX_PARTICLES},
     optics::{
         ink::{FILM_TERMS, Film},
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
+        medium::ParticleConstants,
+        microfacet::ALPHA_MIN,
         quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
         study::{Split, Study, Through},
         table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
@@ -161,6 +163,30 @@ impl MapPlace {
     }
 }
 
+/// Twin of `ParticleSlot`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct ParticleUniform {
+    pub n: Vec3,
+    pub alpha: f32,
+    pub k: Vec3,
+    pub spare: f32,
+    pub albedo: Vec3,
+}
+
+impl ParticleUniform {
+    /// Narrows `particles`, with the roughness floored.
+    pub fn new(particles: &ParticleConstants) -> Self {
+        let narrow = |values: [f64; 3]| DVec3::from_array(values).as_vec3();
+        Self {
+            n: narrow(particles.n),
+            alpha: particles.roughness.max(ALPHA_MIN) as f32,
+            k: narrow(particles.k),
+            spare: 0.0,
+            albedo: narrow(particles.albedo),
+        }
+    }
+}
+
 /// Twin of `InterfaceTable`.
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
 pub struct InterfaceUniform {
@@ -278,6 +304,8 @@ pub struct PaperUniform {
     pub albedo_place: MapPlace,
     pub normal_place: MapPlace,
     pub roughness_place: MapPlace,
+    pub matter_place: MapPlace,
+    pub particles: [ParticleUniform; MAX_PARTICLES],
     pub outline_place: MapPlace,
     pub level: Vec4,
     pub light_table: Vec3,

@@ -15,7 +15,7 @@ use glam::{DAffine2, DVec2};
 
 use crate::{
     manifest::exhibit::{HeightMap, OverlayKind, Surface},
-    maps::{self, Coding, MapError, Pyramid, normal_coding},
+    maps::{self, Coding, MapError, MatterPart, Pyramid, normal_coding},
     needs::MapUse,
     sheet::{mesh::SideSurface, upload},
 };
@@ -277,6 +277,11 @@ fn load(map: &MapUse) -> Result<Pyramid, MapError> {
             maps::load_normal_from_height(path, map.range_um, *extent_mm)
         }
         MapUse::Roughness(map) => maps::load_roughness(path, map.gloss),
+        MapUse::RoughnessOfMatter(stack, paper) => {
+            maps::load_roughness_of_matter(&stack.layers, *paper)
+        }
+        MapUse::Matter(stack) => maps::load_matter(&stack.layers, MatterPart::First),
+        MapUse::MatterMore(stack) => maps::load_matter(&stack.layers, MatterPart::More),
         MapUse::Outline(_) => maps::load_outline(path),
         MapUse::Transmission(_) | MapUse::Height(_) => maps::load_height(path),
         MapUse::Overlay(overlay) => match &overlay.kind {

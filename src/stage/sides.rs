@@ -27,7 +27,7 @@ use crate::{
     sheet::{
         PaperMaps, PaperMaterial,
         mesh::SideSurface,
-        uniform::{InterfaceUniform, MapPlace, PaperUniform},
+        uniform::{InterfaceUniform, MapPlace, PaperUniform, ParticleUniform},
         upload::profile_image,
     },
 };
@@ -251,6 +251,9 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
         };
         uniform.interface_table = InterfaceUniform::new(&table);
     }
+    for (slot, particle) in uniform.particles.iter_mut().zip(&side.particles) {
+        *slot = ParticleUniform::new(particle);
+    }
     // With shared coordinates, the vertex shader reads the albedo's place for every map.
     if let Some(first) = side.maps.first() {
         uniform.albedo_place = MapPlace::new(first.file().uv_from_side);
@@ -262,7 +265,12 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
             MapUse::Normal(_) | MapUse::NormalFromHeight(..) => {
                 uniform.set_normal_place(uv_from_side, facts.coding);
             }
-            MapUse::Roughness(_) => uniform.roughness_place = MapPlace::new(uv_from_side),
+            MapUse::Roughness(_) | MapUse::RoughnessOfMatter(..) => {
+                uniform.roughness_place = MapPlace::new(uv_from_side);
+            }
+            MapUse::Matter(_) | MapUse::MatterMore(_) => {
+                uniform.matter_place = MapPlace::new(uv_from_side);
+            }
             MapUse::Outline(_) => uniform.outline_place = MapPlace::new(uv_from_side),
             MapUse::Height(height) => uniform.set_height(height),
             MapUse::OtherAlbedo(_) => uniform.other_place = MapPlace::new(uv_from_side),
@@ -295,7 +303,9 @@ fn bound(side: &SideNeeds, images: Vec<Handle<Image>>) -> PaperMaps {
         match map {
             MapUse::Albedo(_) => maps.albedo = Some(image),
             MapUse::Normal(_) | MapUse::NormalFromHeight(..) => maps.normal = Some(image),
-            MapUse::Roughness(_) => maps.roughness = Some(image),
+            MapUse::Roughness(_) | MapUse::RoughnessOfMatter(..) => maps.roughness = Some(image),
+            MapUse::Matter(_) => maps.matter = Some(image),
+            MapUse::MatterMore(_) => maps.matter_more = Some(image),
             MapUse::Outline(_) => maps.outline = Some(image),
             MapUse::Height(_) => maps.height = Some(image),
             MapUse::Transmission(_) => maps.transmission = Some(image),
