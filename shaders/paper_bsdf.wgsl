@@ -110,7 +110,7 @@ const ALPHA_FIT_MIN: f32 = 0.1;
 // Coefficients over the powers of √μ, each over the powers of √α.
 struct InterfaceTable {
     t: array<vec4<f32>, 7>,
-    lost: array<vec4<f32>, 4>,
+    lost: array<vec4<f32>, 7>,
     compensation: vec4<f32>,
     t_mean: vec4<f32>,
     capture: vec4<f32>,
@@ -120,7 +120,7 @@ struct InterfaceTable {
 // The table at one roughness: what interface_at needs for every direction of a pixel.
 struct InterfaceRow {
     t: array<f32, 7>,
-    lost: array<f32, 4>,
+    lost: array<f32, 7>,
 }
 
 // Powers of √α.
@@ -136,9 +136,10 @@ fn interface_row(table: InterfaceTable, p: vec4<f32>) -> InterfaceRow {
             dot(table.t[0], p), dot(table.t[1], p), dot(table.t[2], p), dot(table.t[3], p),
             dot(table.t[4], p), dot(table.t[5], p), dot(table.t[6], p),
         ),
-        array<f32, 4>(
+        array<f32, 7>(
             dot(table.lost[0], p), dot(table.lost[1], p), dot(table.lost[2], p),
-            dot(table.lost[3], p),
+            dot(table.lost[3], p), dot(table.lost[4], p), dot(table.lost[5], p),
+            dot(table.lost[6], p),
         ),
     );
 }
@@ -148,7 +149,8 @@ fn interface_at(row: InterfaceRow, mu: f32) -> Interface {
     let c = row.t;
     let t = (((((c[6] * x + c[5]) * x + c[4]) * x + c[3]) * x + c[2]) * x + c[1]) * x + c[0];
     let d = row.lost;
-    let lost = ((d[3] * x + d[2]) * x + d[1]) * x + d[0];
+    let lost =
+        (((((d[6] * x + d[5]) * x + d[4]) * x + d[3]) * x + d[2]) * x + d[1]) * x + d[0];
     return Interface(clamp(t, 0.0, 1.0), clamp(lost, 0.0, 1.0));
 }
 
@@ -239,10 +241,43 @@ fn brdf_gallery_specular(
     return s.specular * lobe + mean.compensation * at_i.lost * at_o.lost;
 }
 
+// Twins of src/optics/refraction.rs. The table of paths is read by the glue: an array that a
+// function is given would be copied.
+
+const PATH_MU: f32 = 12.0;
+const PATH_ALPHA: f32 = 8.0;
+const ALPHA_FIT_ROOT: f32 = 0.31622776601684;
+
+fn path_mu(mu: f32) -> f32 {
+    return sqrt(clamp(mu, 0.0, 1.0)) * (PATH_MU - 1.0);
+}
+
+fn path_alpha(alpha: f32) -> f32 {
+    let s = sqrt(clamp(alpha, ALPHA_FIT_MIN, 1.0)) - ALPHA_FIT_ROOT;
+    return s * ((PATH_ALPHA - 1.0) / (1.0 - ALPHA_FIT_ROOT));
+}
+
+fn path_between(
+    a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>, x: f32, s: f32,
+) -> vec4<f32> {
+    return mix(mix(a, b, x), mix(c, d, x), s);
+}
+
+fn crossed(path: vec4<f32>, tau: vec3<f32>) -> vec3<f32> {
+    let w = tau / (1.0 + tau);
+    let p = path.x + w * (path.y + w * (path.z + w * path.w));
+    return exp(-tau * max(p, vec3(1.0)));
+}
+
+fn mean_inner_cosine(path: vec4<f32>) -> f32 {
+    return 1.0 / max(path.x + 0.5 * (path.y + 0.5 * (path.z + 0.5 * path.w)), 1.0);
+}
+
 // Twins of src/optics/ink.rs
 
 const DEPTH_MAX: f32 = 20.0;
 const SHARE_MIN: f32 = 1e-20;
+const DEPTH_STEPS: u32 = 4u;
 
 // Coefficients over powers of u (rgb); the last is over powers of w.
 struct Film {
@@ -255,13 +290,20 @@ fn inner_cosine(mu: f32, eta: f32) -> f32 {
     return sqrt(max(1.0 - max(1.0 - mu * mu, 0.0) / (eta * eta), 0.0));
 }
 
-fn optical_depth(film: Film, capture_path: f32, share: vec3<f32>) -> vec3<f32> {
+fn optical_depth(film: Film, capture: vec4<f32>, share: vec3<f32>) -> vec3<f32> {
     let x = clamp(share, vec3(SHARE_MIN), vec3(1.0));
     let u = sqrt(x);
     let c = film.excess;
     let excess = (((((c[6].xyz * u + c[5].xyz) * u + c[4].xyz) * u + c[3].xyz) * u + c[2].xyz) * u
         + c[1].xyz) * u + c[0].xyz;
-    return clamp((-log(x) - excess) / capture_path, vec3(0.0), vec3(DEPTH_MAX));
+    let crossing = max(-log(x) - excess, vec3(0.0));
+    var depth = crossing / capture.x;
+    for (var i = 0u; i < DEPTH_STEPS; i++) {
+        let w = depth / (1.0 + depth);
+        let path = capture.x + w * (capture.y + w * (capture.z + w * capture.w));
+        depth = crossing / max(path, vec3(2.0));
+    }
+    return min(depth, vec3(DEPTH_MAX));
 }
 
 fn internal_reflectance(film: Film, share: vec3<f32>) -> vec3<f32> {
@@ -272,14 +314,12 @@ fn internal_reflectance(film: Film, share: vec3<f32>) -> vec3<f32> {
     return clamp(rho, vec3(0.0), vec3(1.0));
 }
 
-fn diffuse_share(film: Film, tau: vec3<f32>) -> vec3<f32> {
+fn beyond_capture(
+    tau: vec3<f32>, capture: vec4<f32>, path_i: vec4<f32>, path_o: vec4<f32>,
+) -> vec3<f32> {
+    let path = path_i + path_o - capture;
     let w = tau / (1.0 + tau);
-    let c = film.diffuse_path;
-    return exp(-tau * (c.x + w * (c.y + w * (c.z + w * c.w))));
-}
-
-fn beyond_capture(tau: vec3<f32>, capture_path: f32, inner_i: f32, inner_o: f32) -> vec3<f32> {
-    return exp(-tau * (1.0 / inner_i + 1.0 / inner_o - capture_path));
+    return exp(-tau * (path.x + w * (path.y + w * (path.z + w * path.w))));
 }
 
 // Twins of src/optics/study.rs
@@ -289,17 +329,22 @@ struct Split {
     mean: f32,
     at_capture: vec3<f32>,
     depth: f32,
+    leaning: vec3<f32>,
+    inner_mean: f32,
+    of_direction: vec4<f32>,
     forward_share: f32,
     g_forward: f32,
     g_backward: f32,
-    // s0 of the film, where there is room for it.
-    capture_path: f32,
 }
 
 struct Through {
     reflected: vec3<f32>,
+    inner_mean: f32,
     transmitted: vec3<f32>,
     ballistic: vec3<f32>,
+    reflected_leaning: vec3<f32>,
+    transmitted_leaning: vec3<f32>,
+    straight_mean: vec3<f32>,
     flat_share: vec3<f32>,
 }
 
@@ -316,15 +361,20 @@ struct Shares {
     particles: vec3<f32>,
 }
 
-fn crossing(
-    r: vec3<f32>,
-    t: vec3<f32>,
-    rho_f: vec3<f32>,
-    rho_b: vec3<f32>,
-    eta: f32,
-) -> vec3<f32> {
+const DIFFUSE_COSINE: f32 = 0.66666666666667;
+
+fn crossing(through: Through, seen: Seen, m_f: f32, m_b: f32, eta: f32) -> vec3<f32> {
+    let t = min(through.transmitted * seen.clear, through.reflected + through.transmitted);
+    let r = through.reflected + through.transmitted - t;
+    let rho_f = seen.rho_f;
+    let rho_b = seen.rho_b;
+    let passed = through.transmitted_leaning * seen.clear;
+    let returned = through.reflected_leaning * t * seen.clear;
+    let before = (passed * (1.0 - r * rho_f) - returned * rho_f) * (m_f - DIFFUSE_COSINE);
+    let behind = (passed * (1.0 - r * rho_b) - returned * rho_b) * (m_b - DIFFUSE_COSINE);
     let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
-    return t / (eta * eta * max(passes, vec3(1e-6)));
+    let crossed = max(t + before + behind, vec3(0.0));
+    return crossed / (eta * eta * max(passes, vec3(1e-6)));
 }
 
 fn phase_lobe(g: f32, cos_deflection: f32) -> f32 {
@@ -349,8 +399,24 @@ fn single_scatter(split: Split, eta: f32, g: Facing, inner_i: f32, inner_o: f32)
     return phase_function(split, cos_deflection) * left / (inner_i + inner_o);
 }
 
-fn split_shape(split: Split, q: f32) -> vec3<f32> {
-    return max(1.0 + split.kappa * (q - split.mean), vec3(0.0)) * split.at_capture;
+fn split_mean(split: Split, mu: f32) -> f32 {
+    let c = split.of_direction;
+    let v = mu * mu;
+    return c.x + v * (c.y + v * (c.z + v * c.w));
+}
+
+fn split_shape(
+    split: Split, q: f32, mu_i: f32, mu_o: f32, m_i: f32, m_o: f32,
+) -> vec3<f32> {
+    let once = q - split_mean(split, mu_i) - split_mean(split, mu_o) + split.mean;
+    let slanted = 2.0 * split.inner_mean - m_i - m_o;
+    return max(1.0 + split.kappa * once + split.leaning * slanted, vec3(0.0)) * split.at_capture;
+}
+
+struct Ways {
+    capture: vec4<f32>,
+    path_i: vec4<f32>,
+    path_o: vec4<f32>,
 }
 
 // `shares` are particle_shares of the spot: the same for every lamp.
@@ -362,15 +428,19 @@ fn brdf_study(
     mean: InterfaceMean,
     split: Split,
     depth: vec3<f32>,
+    ways: Ways,
     particle: Particle,
     shares: Shares,
 ) -> vec3<f32> {
     let inner_i = inner_cosine(g.mu_i, s.eta);
     let inner_o = inner_cosine(g.mu_o, s.eta);
     let q = single_scatter(split, s.eta, g, inner_i, inner_o);
-    let through_ink = beyond_capture(depth, split.capture_path, inner_i, inner_o);
+    let m_i = mean_inner_cosine(ways.path_i);
+    let m_o = mean_inner_cosine(ways.path_o);
+    let shape = split_shape(split, q, g.mu_i, g.mu_o, m_i, m_o);
+    let through_ink = beyond_capture(depth, ways.capture, ways.path_i, ways.path_o);
     let coupled = at_i.t * at_o.t * mean.capture;
-    let paper = shares.paper * coupled * through_ink * split_shape(split, q);
+    let paper = shares.paper * coupled * through_ink * shape;
     let gloss = brdf_gallery_specular(s, g, at_i, at_o, mean) * (1.0 - particle.covered);
     return (paper + shares.particles) * INV_PI + vec3(gloss);
 }
@@ -414,47 +484,42 @@ struct Seen {
     rho_b: vec3<f32>,
 }
 
-// T0 of the spot; its R0 is what the sheet gives back of both, less this.
-fn spot_transmitted(through: Through, clear: f32) -> vec3<f32> {
-    return min(through.transmitted * clear, through.reflected + through.transmitted);
-}
-
-fn spot_crossing(through: Through, seen: Seen, eta: f32) -> vec3<f32> {
-    let t = spot_transmitted(through, seen.clear);
-    let r = through.reflected + through.transmitted - t;
-    return crossing(r, t, seen.rho_f, seen.rho_b, eta);
-}
-
 fn through_study(
     film: Film,
     through: Through,
     seen: Seen,
     at_o: Interface,
     mean: InterfaceMean,
-    mu_o: f32,
+    path_o: vec4<f32>,
     eta: f32,
 ) -> vec3<f32> {
-    let inner_o = inner_cosine(max(mu_o, MU_MIN), eta);
-    let front = at_o.t * exp(-seen.depth_f / inner_o);
-    let scattered = spot_crossing(through, seen, eta)
-        * diffuse_share(film, seen.depth_b)
-        * mean.t_mean;
-    let straight = at_o.t * exp(-(seen.depth_b + through.ballistic) / inner_o);
-    return front * (scattered + straight);
+    let straight = at_o.t * crossed(path_o, through.ballistic);
+    let m_o = mean_inner_cosine(path_o);
+    let m_i = through.inner_mean;
+    let whole = crossing(through, seen, m_o, m_i, eta) * mean.t_mean;
+    let scattered = max(whole - straight, vec3(0.0)) * crossed(film.diffuse_path, seen.depth_b);
+    let front = at_o.t * crossed(path_o, seen.depth_f);
+    return front * (scattered + straight * crossed(path_o, seen.depth_b));
 }
 
 fn btdf_study(
     through: Through,
     seen: Seen,
-    g: Facing,
     at_i: Interface,
     at_o: Interface,
+    mean: InterfaceMean,
+    path_i: vec4<f32>,
+    path_o: vec4<f32>,
     eta: f32,
 ) -> vec3<f32> {
-    let inner_i = inner_cosine(g.mu_i, eta);
-    let inner_o = inner_cosine(g.mu_o, eta);
-    let inks = exp(-seen.depth_f / inner_o - seen.depth_b / inner_i);
-    return inks * spot_crossing(through, seen, eta) * (at_i.t * at_o.t * INV_PI);
+    let inks = crossed(path_o, seen.depth_f) * crossed(path_i, seen.depth_b);
+    let m_o = mean_inner_cosine(path_o);
+    let m_i = mean_inner_cosine(path_i);
+    let whole = crossing(through, seen, m_o, m_i, eta);
+    let straight_i = at_i.t * crossed(path_i, through.ballistic);
+    let straight_o = at_o.t * crossed(path_o, through.ballistic);
+    let straight = straight_i * straight_o / max(through.straight_mean * mean.t_mean, vec3(1e-30));
+    return inks * max(whole - straight, vec3(0.0)) * (at_i.t * at_o.t * INV_PI);
 }
 
 // Twins of src/optics/lamp.rs. A lamp of any shape in one layout, narrowed on the CPU by

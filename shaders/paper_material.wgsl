@@ -5,12 +5,13 @@
 #import "embedded://recto/paper_bsdf.wgsl"::{
     ALPHA_MIN, INV_PI, MU_MIN,
     Facing, Film, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Particle, Seen,
-    Shares, Split, Surface, Through,
-    albedo_of, brdf_draft, brdf_gallery, brdf_lambert, capture_floor, brdf_study, btdf_study,
-    diffuse_share, facing, fit_powers, inner_cosine, interface_at, interface_mean_at,
+    Shares, Split, Surface, Through, Ways,
+    albedo_of, beyond_capture, brdf_draft, brdf_gallery, brdf_lambert, capture_floor, brdf_study,
+    btdf_study, facing, fit_powers, interface_at, interface_mean_at,
     ies_angles, interface_row, internal_reflectance, light_disc, light_distant, light_ies,
-    light_punctual, light_rectangle,
-    mean_length, optical_depth, particle_shares, through_study, widened,
+    light_punctual, light_rectangle, mean_inner_cosine,
+    mean_length, optical_depth, particle_shares, path_alpha, path_between, path_mu, through_study,
+    widened,
 }
 
 #ifdef RELIEF_SHADOWS
@@ -110,6 +111,8 @@ struct Paper {
     quadrature: array<vec4<f32>, 28>,
     // What the side is made of: the study tier, and light through the sheet.
     film: Film,
+    // 12 nodes over √μ for each of 8 over √α.
+    paths: array<vec4<f32>, 96>,
     split: Split,
     through: Through,
     // Diffuse part of the bare paper's albedo on the side that is seen, and on the other.
@@ -289,6 +292,20 @@ fn light_small(light: Light, p: vec3<f32>) -> Incidence {
     return light_punctual(light, p);
 }
 
+#ifdef PATHS
+// The path through a film at the cosine `mu`; `s` is path_alpha.
+fn path_at(mu: f32, s: f32) -> vec4<f32> {
+    let x = path_mu(mu);
+    let i = min(u32(x), 10u);
+    let j = min(u32(s), 6u);
+    let k = j * 12u + i;
+    return path_between(
+        paper.paths[k], paper.paths[k + 1u], paper.paths[k + 12u], paper.paths[k + 13u],
+        x - f32(i), s - f32(j),
+    );
+}
+#endif
+
 #ifdef RELIEF_SHADOWS
 // Height of the relief in mm, averaged over `width` mm.
 fn height_at(side: vec2<f32>, width: f32) -> f32 {
@@ -459,8 +476,13 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let at_o = interface_at(row, max(dot(n, v), MU_MIN));
     let paper_albedo = albedo_of(s, mean);
 #endif
+#ifdef PATHS
+    let path_s = path_alpha(alpha);
+    let capture = path_at(0.70710678118655, path_s) + path_at(1.0, path_s);
+    let path_o = path_at(dot(n, v), path_s);
+#endif
 #ifdef TIER_STUDY
-    let depth = optical_depth(paper.film, paper.split.capture_path, paper_albedo / paper.lit_bare);
+    let depth = optical_depth(paper.film, capture, paper_albedo / paper.lit_bare);
     let particle = Particle(vec3(1.0), 1.0, vec3(0.0), 0.0);
     let shares = Shares(paper_albedo, 0.0, vec3(0.0));
 #endif
@@ -478,7 +500,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let seen = Seen(
         depth,
         clear,
-        optical_depth(paper.film, paper.split.capture_path, share_b),
+        optical_depth(paper.film, capture, share_b),
         internal_reflectance(paper.film, share_f),
         internal_reflectance(paper.film, share_b),
     );
@@ -499,7 +521,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     var radiance = vec3(0.0);
 #ifdef TRANSMISSION
 #ifdef COUPLED
-    let crossed = through_study(paper.film, paper.through, seen, at_o, mean, dot(n, v), s.eta);
+    let crossed = through_study(paper.film, paper.through, seen, at_o, mean, path_o, s.eta);
 #else
     let crossed = paper.through.flat_share * clear;
 #endif
@@ -572,8 +594,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
 #ifdef TIER_STUDY
                 let f = brdf_study(
-                    s, facing(n, incidence.l, v), at_i, at_o, mean, paper.split, depth, particle,
-                    shares,
+                    s, facing(n, incidence.l, v), at_i, at_o, mean, paper.split, depth,
+                    Ways(capture, path_at(mu_i, path_s), path_o), particle, shares,
                 );
 #endif
 #ifdef TIER_ISLE
@@ -613,8 +635,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef COUPLED
             let behind = -dot(geometric, incidence.l);
             if behind > 0.0 {
-                let g = Facing(max(behind, MU_MIN), max(dot(n, v), MU_MIN), 0.0, 0.0);
-                let f = btdf_study(paper.through, seen, g, interface_at(row, behind), at_o, s.eta);
+                let f = btdf_study(
+                    paper.through, seen, interface_at(row, behind), at_o, mean,
+                    path_at(behind, path_s), path_o, s.eta,
+                );
                 radiance += f * baked * incidence.e * behind;
             }
 #endif
@@ -625,9 +649,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef COUPLED
     var diffuse = paper_albedo * (at_o.t * mean.t_mean * mean.capture);
 #ifdef TIER_STUDY
-    // Half of the path is that of diffuse light.
-    let way_out = depth * (1.0 / inner_cosine(max(dot(n, v), MU_MIN), s.eta) - paper.split.capture_path);
-    diffuse *= diffuse_share(paper.film, depth) * exp(-way_out);
+    // Light from everywhere comes in along its mean path.
+    let leaning = paper.split.leaning * (paper.split.inner_mean - mean_inner_cosine(path_o));
+    diffuse *= beyond_capture(depth, capture, paper.film.diffuse_path, path_o)
+        * (max(1.0 + leaning, vec3(0.0)) * paper.split.at_capture);
 #endif
     radiance += (diffuse + vec3(1.0 - at_o.t)) * paper.ambient * INV_PI;
 #else

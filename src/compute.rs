@@ -7,12 +7,13 @@
 use std::borrow::Cow;
 
 use bevy::render::render_resource::{ShaderType, encase::StorageBuffer};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
 use crate::{
     device::{self, NoDevice},
     optics::{
         bsdf::{Pair, Sample, Specimen},
+        refraction::PATH_MU,
         tier::Tier,
     },
     sheet::{
@@ -72,27 +73,37 @@ fn text(tier: Tier) -> String {
         struct Specimen {{
             albedo: vec3<f32>, alpha: f32, eta: f32, f_normal: f32, specular: f32, f_capture: f32,
             depth: vec3<f32>, depth_b: vec3<f32>, rho_f: vec3<f32>, rho_b: vec3<f32>,
+            capture: vec4<f32>, paths: array<vec4<f32>, 12>,
             table: InterfaceTable, split: Split, through: Through,
         }}
         @group(0) @binding(0) var<storage, read> specimen: Specimen;
         @group(0) @binding(1) var<storage, read> given: array<f32>;
         @group(0) @binding(2) var<storage, read_write> found: array<f32>;
+        // At one roughness.
+        fn path_at(mu: f32) -> vec4<f32> {{
+            let x = path_mu(mu);
+            let i = min(u32(x), 10u);
+            return mix(specimen.paths[i], specimen.paths[i + 1u], x - f32(i));
+        }}
         fn study(
             s: Surface, g: Facing, at_i: Interface, at_o: Interface, mean: InterfaceMean, v_z: f32,
         ) -> vec3<f32> {{
             if v_z < 0.0 {{
-                let behind = Facing(g.mu_i, max(-v_z, MU_MIN), 0.0, 0.0);
+                let mu_o = max(-v_z, MU_MIN);
                 let seen = Seen(
                     vec3(0.0), 1.0, specimen.depth_b, specimen.rho_f, specimen.rho_b,
                 );
                 let row = interface_row(specimen.table, vec4(1.0, 0.0, 0.0, 0.0));
-                let out = interface_at(row, behind.mu_o);
-                return btdf_study(specimen.through, seen, behind, at_i, out, s.eta);
+                return btdf_study(
+                    specimen.through, seen, at_i, interface_at(row, mu_o), mean,
+                    path_at(g.mu_i), path_at(mu_o), s.eta,
+                );
             }}
             let particle = Particle(vec3(0.0), 0.0, vec3(0.0), 0.0);
             let shares = Shares(albedo_of(s, mean), 0.0, vec3(0.0));
             return brdf_study(
-                s, g, at_i, at_o, mean, specimen.split, specimen.depth, particle, shares,
+                s, g, at_i, at_o, mean, specimen.split, specimen.depth,
+                Ways(specimen.capture, path_at(g.mu_i), path_at(g.mu_o)), particle, shares,
             );
         }}
         @compute @workgroup_size({WORKGROUP})
@@ -131,6 +142,8 @@ struct SpecimenUniform {
     depth_b: Vec3,
     rho_f: Vec3,
     rho_b: Vec3,
+    capture: Vec4,
+    paths: [Vec4; PATH_MU],
     table: InterfaceUniform,
     split: SplitUniform,
     through: ThroughUniform,
@@ -151,6 +164,8 @@ fn constants(specimen: &Specimen) -> Result<Vec<u8>, ComputeError> {
         depth_b: seen.depth_b.as_vec3(),
         rho_f: seen.rho_f.as_vec3(),
         rho_b: seen.rho_b.as_vec3(),
+        capture: specimen.capture().as_vec4(),
+        paths: std::array::from_fn(|i| specimen.study.film.paths.nodes[i].as_vec4()),
         table: InterfaceUniform::new(&specimen.interface),
         split: SplitUniform::new(&specimen.study.split),
         through: ThroughUniform::new(&specimen.study.through),

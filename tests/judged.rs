@@ -8,17 +8,19 @@ use std::{
     f64::consts::{PI, TAU},
     fmt::Write as _,
     fs,
+    sync::Arc,
 };
 
 use glam::DVec3;
 use recto::{
     optics::{
-        ink::{inner_cosine, internal_reflectance, optical_depth},
+        ink::{capture_path, inner_cosine, internal_reflectance, optical_depth},
         microfacet::v_smith,
+        refraction::PathTable,
         slab::{Phase as TierPhase, Slab},
         study::{
-            Particle, Seen, Split, Study, brdf_study, particle_shares, phase_lobe, single_scatter,
-            through_study,
+            Particle, Seen, Split, Study, Ways, brdf_study, particle_shares, phase_lobe,
+            single_scatter, through_study,
         },
         table::{InterfaceMean, InterfaceTable},
         tier::{Surface, albedo_of, brdf_gallery, brdf_gallery_specular, capture_floor, facing},
@@ -125,7 +127,7 @@ impl Judge {
 #[test]
 #[ignore = "writes the fixture: a minute of random walks"]
 fn bake() {
-    const PATHS: u64 = 200_000;
+    const PATHS: u64 = 2_000_000;
     const PHOTONS: u64 = 1_000_000;
     let mut text = String::from("name,mean,variance\n");
     let mut row = |name: String, e: Estimate| {
@@ -188,7 +190,8 @@ impl Side {
         let table = InterfaceTable::at_roughness(alpha, N, 1.0);
         let mean = table.mean_at(alpha);
         let bare = Surface::new(DVec3::splat(albedo), alpha, N, 1.0);
-        let study = Study::new(&bare, &mean, sheet.slab());
+        let paths = Arc::new(PathTable::at_roughness(alpha, N));
+        let study = Study::new(&bare, &table, paths, sheet.slab());
         Self {
             bare,
             table,
@@ -220,11 +223,26 @@ impl Side {
             &self.mean,
             &self.study.split,
             depth,
+            &self.ways(g.mu_i, g.mu_o),
             &none,
             &shares,
         );
         let gallery = brdf_gallery(&s, &g, &at_i, &at_o, &self.mean);
         [gallery.x - gloss, study.x - gloss]
+    }
+
+    /// What the tier takes for a photograph of ink of this depth.
+    fn photograph_of(&self, tau: f64) -> f64 {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.depth(middle).x > tau {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
     }
 
     fn share(&self, albedo: f64) -> DVec3 {
@@ -236,11 +254,17 @@ impl Side {
     }
 
     fn depth(&self, albedo: f64) -> DVec3 {
-        optical_depth(
-            &self.study.film,
-            self.study.film.capture_path,
-            self.share(albedo),
-        )
+        let capture = self.ways(1.0, 1.0).capture;
+        optical_depth(&self.study.film, capture, self.share(albedo))
+    }
+
+    fn ways(&self, mu_i: f64, mu_o: f64) -> Ways {
+        let paths = &self.study.film.paths;
+        Ways {
+            capture: capture_path(paths, self.bare.alpha),
+            path_i: paths.at(mu_i, self.bare.alpha),
+            path_o: paths.at(mu_o, self.bare.alpha),
+        }
     }
 
     /// Over a part of the hemisphere around z, the mean with the cosine as weight.
@@ -269,14 +293,24 @@ impl Side {
         let film = &self.study.film;
         let (x_f, x_b) = (self.share(front), self.share(back));
         let seen = Seen {
-            depth_f: optical_depth(film, film.capture_path, x_f),
-            depth_b: optical_depth(film, film.capture_path, x_b),
+            depth_f: self.depth(front),
+            depth_b: self.depth(back),
             rho_f: internal_reflectance(film, x_f),
             rho_b: internal_reflectance(film, x_b),
             clear: 1.0,
         };
         let at_o = self.table.at(mu, self.bare.alpha);
-        through_study(film, &self.study.through, &seen, &at_o, &self.mean, mu, N).x
+        let path_o = self.ways(1.0, mu).path_o;
+        through_study(
+            film,
+            &self.study.through,
+            &seen,
+            &at_o,
+            &self.mean,
+            path_o,
+            N,
+        )
+        .x
     }
 }
 
@@ -410,12 +444,17 @@ fn no_tier_gives_more_light_than_it_gets() {
             let table = InterfaceTable::at_roughness(alpha, N, 1.0);
             let mean = table.mean_at(alpha);
             let r_i = 1.0 - mean.t_mean / (N * N);
-            let r_b = sheet.slab().body(r_i).backed(r_i);
             let unlit = Surface::new(DVec3::ZERO, alpha, N, 1.0);
-            // What a lossless sheet photographs as.
-            let albedo =
-                r_b / (1.0 - r_i * r_b) / (N * N * mean.capture) + capture_floor(&unlit, &mean);
-            let side = Side::new(&sheet, alpha, albedo);
+            // What a lossless sheet photographs as, which the study tier tells from its mean.
+            let mut albedo = 0.8;
+            let mut side = Side::new(&sheet, alpha, albedo);
+            for _ in 0..6 {
+                let split = &side.study.split;
+                let r_b = sheet.slab().body(r_i, split.inner_mean).backed(r_i);
+                let lit = r_b / (1.0 - r_i * r_b) / (N * N * mean.capture);
+                albedo = lit / split.at_capture.x + capture_floor(&unlit, &mean);
+                side = Side::new(&sheet, alpha, albedo);
+            }
             for mu in [0.1f64, 0.3, 0.6, 1.0] {
                 let l = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
                 let mirrored = 1.0 - side.table.at(mu, alpha).t;

@@ -7,7 +7,7 @@ use bevy::render::render_resource::{
     ShaderType,
     encase::{StorageBuffer, internal::WriteInto},
 };
-use glam::{DVec3, Vec3};
+use glam::{DVec3, DVec4, Vec3};
 use recto::{
     optics::{
         fresnel::{fresnel_dielectric, fresnel_schlick, normal_reflectance},

@@ -17,6 +17,7 @@ use recto::{
         ink::FILM_TERMS,
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
+        refraction::{PATH_ALPHA, PATH_MU},
         table::{ALPHA_FIT_MIN, LOST_TERMS, MU_TERMS},
     },
     sheet::{
@@ -178,11 +179,12 @@ fn signatures(text: &str, keyword: &str, open: char, close: char) -> BTreeMap<St
 }
 
 /// Functions of the twin sources that only the CPU calls.
-const CPU_ONLY: [&str; 4] = [
+const CPU_ONLY: [&str; 5] = [
     "capture_path",
     "directional_albedo",
     "normal_reflectance",
     "polygon_form",
+    "ways_back",
 ];
 /// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
 /// pixel: these stand for methods, `Light::at`, `InterfaceTable::at` and `mean_at`.
@@ -250,6 +252,18 @@ fn constants_of_the_shaders_are_those_of_the_sources() {
     assert_eq!(constant(PAPER_BSDF, "ALPHA_MIN"), ALPHA_MIN);
     assert_eq!(constant(PAPER_BSDF, "MU_MIN"), MU_MIN);
     assert_eq!(constant(PAPER_BSDF, "ALPHA_FIT_MIN"), ALPHA_FIT_MIN);
+    let root = constant(PAPER_BSDF, "ALPHA_FIT_ROOT") as f32;
+    assert_eq!(root, ALPHA_FIT_MIN.sqrt() as f32);
+    assert_eq!(constant(PAPER_BSDF, "PATH_MU"), PATH_MU as f64);
+    assert_eq!(constant(PAPER_BSDF, "PATH_ALPHA"), PATH_ALPHA as f64);
+    // The glue's own numbers for the same nodes.
+    assert!(PAPER_MATERIAL.contains(&format!(
+        "paths: array<vec4<f32>, {}>",
+        PATH_MU * PATH_ALPHA
+    )));
+    assert!(PAPER_MATERIAL.contains(&format!("min(u32(x), {}u)", PATH_MU - 2)));
+    assert!(PAPER_MATERIAL.contains(&format!("min(u32(s), {}u)", PATH_ALPHA - 2)));
+    assert!(PAPER_MATERIAL.contains(&format!("let k = j * {PATH_MU}u + i;")));
     assert_eq!(constant(PAPER_BASELINES, "BASE_MIN"), BASE_MIN);
 }
 
@@ -361,18 +375,24 @@ impl Sentinel {
             mean: self.f32(),
             at_capture: self.vec3(),
             depth: self.f32(),
+            leaning: self.vec3(),
+            inner_mean: self.f32(),
+            of_direction: self.vec4(),
             forward_share: self.f32(),
             g_forward: self.f32(),
             g_backward: self.f32(),
-            capture_path: self.f32(),
         })
     }
 
     fn through(&mut self) -> (ThroughUniform, Fields) {
         filled!(ThroughUniform {
             reflected: self.vec3(),
+            inner_mean: self.f32(),
             transmitted: self.vec3(),
             ballistic: self.vec3(),
+            reflected_leaning: self.vec3(),
+            transmitted_leaning: self.vec3(),
+            straight_mean: self.vec3(),
             flat_share: self.vec3(),
         })
     }
@@ -408,6 +428,7 @@ impl Sentinel {
             overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),
             quadrature: std::array::from_fn::<_, { GAUSS_LEGENDRE.len() }, _>(|_| self.vec4()),
             film: self.film().0,
+            paths: std::array::from_fn::<_, { PATH_MU * PATH_ALPHA }, _>(|_| self.vec4()),
             split: self.split().0,
             through: self.through().0,
             lit_bare: self.vec3(),

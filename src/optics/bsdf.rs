@@ -1,6 +1,8 @@
 //! A tier's BSDF at pairs of directions, for tables: `recto bsdf`.
 
-use glam::DVec3;
+use std::sync::Arc;
+
+use glam::{DVec3, DVec4};
 
 use crate::units::Micrometres;
 
@@ -10,13 +12,14 @@ use super::{
         brdf_cook_torrance_gauss, brdf_isle, brdf_oren_nayar, brdf_phong, brdf_phong_plain,
         off_mirror,
     },
-    ink::{inner_cosine, internal_reflectance, optical_depth},
+    ink::{capture_path, internal_reflectance, optical_depth},
     medium::{Medium, MediumKind},
     microfacet::MU_MIN,
+    refraction::{PathTable, crossed},
     slab::Slab,
-    study::{Particle, Seen, Shares, Study, brdf_study, btdf_study},
+    study::{Particle, Seen, Shares, Study, Ways, brdf_study, btdf_study},
     table::InterfaceTable,
-    tier::{Facing, Surface, Tier, albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing},
+    tier::{Surface, Tier, albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing},
 };
 
 /// The columns that are read, in this order.
@@ -87,8 +90,8 @@ impl Specimen {
                 ..surface
             },
         };
-        let mean = interface.mean_at(surface.alpha);
-        let study = Study::new(&bare, &mean, Slab::rag_paper(THICKNESS));
+        let paths = Arc::new(PathTable::at_roughness(surface.alpha, medium.index()));
+        let study = Study::new(&bare, &interface, paths, Slab::rag_paper(THICKNESS));
         Self {
             surface,
             interface,
@@ -101,11 +104,27 @@ impl Specimen {
         let share = self.share();
         Seen {
             depth_f: DVec3::ZERO,
-            depth_b: optical_depth(&self.study.film, self.study.film.capture_path, share),
+            depth_b: self.depth(),
             rho_f: internal_reflectance(&self.study.film, DVec3::ONE),
             rho_b: internal_reflectance(&self.study.film, share),
             clear: 1.0,
         }
+    }
+
+    /// τ of the ink.
+    fn depth(&self) -> DVec3 {
+        let film = &self.study.film;
+        optical_depth(film, self.capture(), self.share())
+    }
+
+    /// The path through its film in the geometry of capture.
+    pub fn capture(&self) -> DVec4 {
+        capture_path(&self.study.film.paths, self.surface.alpha)
+    }
+
+    /// The path through its film of light at the cosine `mu`.
+    pub fn path(&self, mu: f64) -> DVec4 {
+        self.study.film.paths.at(mu, self.surface.alpha)
     }
 
     /// Photographed share of the bare paper's diffuse albedo.
@@ -136,19 +155,16 @@ impl Specimen {
     fn transmitted(&self, l: DVec3, v: DVec3) -> DVec3 {
         let s = &self.surface;
         // Both cosines are taken from the side that they are on.
-        let g = Facing {
-            mu_i: l.z.max(MU_MIN),
-            mu_o: (-v.z).max(MU_MIN),
-            cos_d: 0.0,
-            sin2_h: 0.0,
-        };
+        let (mu_i, mu_o) = (l.z.max(MU_MIN), (-v.z).max(MU_MIN));
         let at = |mu: f64| self.interface.at(mu, s.alpha);
         btdf_study(
             &self.study.through,
             &self.seen(),
-            &g,
-            &at(g.mu_i),
-            &at(g.mu_o),
+            &at(mu_i),
+            &at(mu_o),
+            &self.interface.mean_at(s.alpha),
+            self.path(mu_i),
+            self.path(mu_o),
             s.eta,
         )
     }
@@ -161,8 +177,8 @@ impl Specimen {
         }
         let mu = l.z.max(MU_MIN);
         let t = self.interface.at(mu, self.surface.alpha).t;
-        let crossed = self.seen().depth_b + self.study.through.ballistic;
-        t * t * (-crossed / inner_cosine(mu, self.surface.eta)).exp()
+        let depth = self.seen().depth_b + self.study.through.ballistic;
+        t * t * crossed(self.path(mu), depth)
     }
 
     fn reflected(&self, tier: Tier, l: DVec3, v: DVec3) -> DVec3 {
@@ -190,7 +206,12 @@ impl Specimen {
                     &at(g.mu_o),
                     &mean,
                     &self.study.split,
-                    optical_depth(&self.study.film, self.study.film.capture_path, self.share()),
+                    self.depth(),
+                    &Ways {
+                        capture: self.capture(),
+                        path_i: self.path(g.mu_i),
+                        path_o: self.path(g.mu_o),
+                    },
                     &Particle::default(),
                     &shares,
                 )

@@ -77,19 +77,20 @@ impl Slab {
     }
 
     /// Light per unit of flux that has entered: (reflected, transmitted), both boundaries
-    /// included, for the boundaries' internal diffuse reflectance `r_i` in [0, 1).
+    /// included, for the boundaries' internal diffuse reflectance `r_i` in [0, 1). `inner` is the
+    /// mean cosine inside of the light that enters, in [0, 1]: 1 for a beam along the normal.
     ///
     /// Diffusion between extrapolated boundaries with the source one transport mean free path
-    /// deep: the closed form of the sum over image dipoles (Donner & Jensen 2005, eq. 11 and 12).
-    /// In a slab thinner than that the source lies at its far side.
-    pub fn with_boundaries(&self, r_i: f64) -> (f64, f64) {
+    /// along that light: the closed form of the sum over image dipoles (Donner & Jensen 2005,
+    /// eq. 11 and 12). In a slab thinner than that the source lies at its far side.
+    pub fn with_boundaries(&self, r_i: f64, inner: f64) -> (f64, f64) {
         let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
         let sigma_t = sigma_s + self.absorption;
         let albedo = sigma_s / sigma_t;
         let sigma_tr = (3.0 * self.absorption * sigma_t).sqrt();
         let z_b = 2.0 * (1.0 + r_i) / (1.0 - r_i) / (3.0 * sigma_t);
         let l = self.thickness + 2.0 * z_b;
-        let a = (1.0 / sigma_t).min(self.thickness);
+        let a = (inner / sigma_t).min(self.thickness);
         let b = a + 2.0 * z_b;
         let ratio = |k: f64| sinh_ratio(sigma_tr, k, l);
         let reflected = 0.5 * albedo * (ratio(l - a) + ratio(l - b));
@@ -98,8 +99,8 @@ impl Slab {
     }
 
     /// The slab alone, so that ink can lie between it and its boundaries.
-    pub fn body(&self, r_i: f64) -> Body {
-        let (x, t) = self.with_boundaries(r_i);
+    pub fn body(&self, r_i: f64, inner: f64) -> Body {
+        let (x, t) = self.with_boundaries(r_i, inner);
         let (u, v) = (x / (1.0 - r_i), t / (1.0 - r_i));
         let undone = |sum: f64| sum / (1.0 + r_i * sum);
         let (s, q) = (undone(u + v), undone(u - v));
@@ -112,8 +113,11 @@ impl Slab {
     /// The same slab with the absorption that makes it, over a back boundary of reflectance
     /// `r_i`, reflect the share `r_b` of diffuse light from within; without absorption where
     /// even that is too dark.
-    pub fn absorbing_to(self, r_b: f64, r_i: f64) -> Self {
-        let lit = |absorption: f64| Self { absorption, ..self }.body(r_i).backed(r_i);
+    pub fn absorbing_to(self, r_b: f64, r_i: f64, inner: f64) -> Self {
+        let lit = |absorption: f64| {
+            let slab = Self { absorption, ..self };
+            slab.body(r_i, inner).backed(r_i)
+        };
         let (mut low, mut high) = (0.0, 1.0);
         if lit(low) <= r_b {
             return Self {
@@ -185,7 +189,7 @@ mod tests {
             (slab(20.0, 0.01, 0.15), 0.477, 0.476),
             (slab(40.0, 0.4, 0.15), 0.473, 0.264),
         ] {
-            let (x, t) = Slab { phase, ..slab }.with_boundaries(R_I);
+            let (x, t) = Slab { phase, ..slab }.with_boundaries(R_I, 1.0);
             // Printed to three places.
             assert!((0.96 * x - reflected).abs() < 1e-3, "{slab:?}: {x} {t}");
             assert!((0.96 * t - transmitted).abs() < 1e-3, "{slab:?}: {x} {t}");
@@ -196,16 +200,16 @@ mod tests {
     fn lossless_slabs_keep_all_light_and_nothing_overflows() {
         for scattering in [1e-3, 1.0, 81.38, 1e5] {
             for thickness in [1e-6, 1e-3, 0.15, 10.0, 1e4] {
-                let (x, t) = slab(scattering, 0.0, thickness).with_boundaries(R_I);
+                let (x, t) = slab(scattering, 0.0, thickness).with_boundaries(R_I, 1.0);
                 assert!((x + t - 1.0).abs() < 1e-12, "{scattering} {thickness}");
-                let body = slab(scattering, 0.0, thickness).body(R_I);
+                let body = slab(scattering, 0.0, thickness).body(R_I, 1.0);
                 assert!((body.reflected + body.transmitted - 1.0).abs() < 1e-9);
                 for absorption in [1e-12, 1e-6, 0.05, 1e3] {
                     let slab = slab(scattering, absorption, thickness);
-                    let (x, t) = slab.with_boundaries(R_I);
+                    let (x, t) = slab.with_boundaries(R_I, 1.0);
                     assert!((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&t));
                     assert!(x + t <= 1.0 + 1e-12, "{slab:?}");
-                    let body = slab.body(R_I);
+                    let body = slab.body(R_I, 1.0);
                     assert!(body.reflected + body.transmitted <= 1.0 + 1e-9, "{slab:?}");
                 }
             }
@@ -229,17 +233,24 @@ mod tests {
     fn absorption_is_found_again() {
         for absorption in [0.0, 1e-3, 0.05, 0.5, 5.0] {
             let slab = slab(81.38, absorption, 0.15);
-            let r_b = slab.body(R_I).backed(R_I);
-            let found = slab.absorbing_to(r_b, R_I).absorption;
+            let r_b = slab.body(R_I, 1.0).backed(R_I);
+            let found = slab.absorbing_to(r_b, R_I, 1.0).absorption;
             assert!(
                 (found - absorption).abs() < 1e-9 + 1e-6 * absorption,
                 "{found}"
             );
         }
         assert_eq!(
-            slab(81.38, 3.0, 0.15).absorbing_to(2.0, R_I).absorption,
+            slab(81.38, 3.0, 0.15)
+                .absorbing_to(2.0, R_I, 1.0)
+                .absorption,
             0.0
         );
-        assert!(slab(81.38, 3.0, 0.15).absorbing_to(0.0, R_I).absorption > 1e3);
+        assert!(
+            slab(81.38, 3.0, 0.15)
+                .absorbing_to(0.0, R_I, 1.0)
+                .absorption
+                > 1e3
+        );
     }
 }

@@ -1,17 +1,21 @@
 //! The study tier: ink as a film of its own, single scattering apart, light through the sheet,
 //! and particles of metal and chalk, all calibrated by the photograph.
 
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::{
+    f64::consts::{FRAC_1_SQRT_2, PI},
+    sync::Arc,
+};
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 use super::{
     fresnel::fresnel_conductor,
-    ink::{Film, beyond_capture, capture_path, diffuse_share, inner_cosine},
-    microfacet::{MU_MIN, d_ggx, v_smith},
-    quadrature::gauss_legendre,
-    slab::{Body, Phase, Slab},
-    table::{Interface, InterfaceMean},
+    ink::{Film, beyond_capture, inner_cosine},
+    microfacet::{d_ggx, v_smith},
+    quadrature::{chebyshev, gauss_legendre, through},
+    refraction::{PathTable, crossed, mean_inner_cosine},
+    slab::{Phase, Slab},
+    table::{Interface, InterfaceMean, InterfaceTable},
     tier::{Facing, Surface, albedo_of, brdf_gallery_specular, capture_floor},
 };
 
@@ -25,7 +29,10 @@ pub struct Study {
     pub through: Through,
 }
 
-/// Light scattered once within the paper, against its mean over all directions.
+/// How the paper's diffuse light differs from one direction to another. Light scattered once
+/// stands against its mean over all directions, and what enters at a slant is sent back sooner,
+/// so that less of it crosses the sheet. The means of both over either direction are those of
+/// diffusion, so that no light is made or lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
     /// κ = ωπ(1 − r_i R_b)/R_b: a single scatter's share of what the paper sends back, over
@@ -33,23 +40,35 @@ pub struct Split {
     pub kappa: DVec3,
     /// Mean of [`single_scatter`] over both hemispheres, weighted as light enters and leaves.
     pub mean: f64,
+    /// 1 over the shape in the geometry of capture.
+    pub at_capture: DVec3,
     /// Optical thickness σt·d.
     pub depth: f64,
+    /// −d ln R/dμ′ of the slab, by the mean cosine μ′ of the light within.
+    pub leaning: DVec3,
+    /// Mean of μ′ over the hemisphere, weighted as light enters.
+    pub inner_mean: f64,
+    /// Mean of [`single_scatter`] over one hemisphere: coefficients over powers of μ² of the other
+    /// direction.
+    pub of_direction: DVec4,
     pub phase: Phase,
-    /// s0 of the film.
-    pub capture_path: f64,
-    /// 1/(1 + κ(q − mean)) in the geometry of capture.
-    pub at_capture: DVec3,
 }
 
 /// Light through the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through {
-    /// R0 and T0 of the paper alone.
+    /// R0 and T0 of the paper between no boundaries, for diffuse light within.
     pub reflected: DVec3,
+    /// As of [`Split`].
+    pub inner_mean: f64,
     pub transmitted: DVec3,
     /// Optical thickness σt·d of the paper: light that is not scattered at all.
     pub ballistic: DVec3,
+    /// −dR0/dμ′ and dT0/dμ′ by the mean cosine of light that enters.
+    pub reflected_leaning: DVec3,
+    pub transmitted_leaning: DVec3,
+    /// Mean share of what has entered that goes straight through.
+    pub straight_mean: DVec3,
     /// Share of a light table's radiance that bare paper shows on average, for tiers that
     /// know no angles.
     pub flat_share: DVec3,
@@ -67,64 +86,111 @@ pub struct Particle {
     pub covered: f64,
 }
 
+/// Directions over a hemisphere: μ, its share of the light that enters, and its path.
+type Directions = Vec<(f64, f64, DVec4)>;
+
+fn directions(interface: &InterfaceTable, paths: &PathTable, alpha: f64) -> Directions {
+    const GRID: u32 = 7;
+    let mut directions: Directions = (0..GRID)
+        .map(|i| {
+            let [x, weight] = gauss_legendre(GRID, i);
+            // 2μ dμ = d(μ²).
+            let mu = (0.5 + 0.5 * x).sqrt();
+            (mu, weight * interface.at(mu, alpha).t, paths.at(mu, alpha))
+        })
+        .collect();
+    let all: f64 = directions.iter().map(|(_, weight, _)| weight).sum();
+    directions
+        .iter_mut()
+        .for_each(|(_, weight, _)| *weight /= all);
+    directions
+}
+
 impl Study {
     /// A side of paper whose bare spots photograph as `bare` (linear sRGB) with the surface
-    /// `bare` of index `eta` (> 1), over its interface's means; `slab` gives scattering, phase
-    /// and thickness, its absorption follows from the albedo. The sheet hangs free: behind it is
-    /// its own boundary.
-    pub fn new(bare: &Surface, mean: &InterfaceMean, slab: Slab) -> Self {
+    /// `bare` of index `eta` (> 1), under `interface`, with its `paths`; `slab` gives scattering,
+    /// phase and thickness, its absorption follows from the albedo. The sheet hangs free: behind
+    /// it is its own boundary.
+    pub fn new(
+        bare: &Surface,
+        interface: &InterfaceTable,
+        paths: Arc<PathTable>,
+        slab: Slab,
+    ) -> Self {
+        let mean = interface.mean_at(bare.alpha);
         let n2 = bare.eta * bare.eta;
         let r_i = (1.0 - mean.t_mean / n2).max(0.0);
-        let albedo = albedo_of(bare, mean).max(DVec3::splat(1e-3));
-        let r_b = albedo.map(|a| {
-            let from_within = a * n2 * mean.capture;
-            (from_within / (1.0 + r_i * from_within)).min(1.0)
-        });
-        let slabs = r_b.to_array().map(|r_b| slab.absorbing_to(r_b, r_i));
-        let per_channel = |of: &dyn Fn(&Slab) -> f64| DVec3::from_array(slabs.each_ref().map(of));
-        let body = |slab: &Slab| -> Body { slab.body(r_i) };
-        let reflected = per_channel(&|slab| body(slab).reflected);
-        let transmitted = per_channel(&|slab| body(slab).transmitted);
-        let depth = per_channel(&|slab| (slab.scattering + slab.absorption) * slab.thickness);
-        let omega = per_channel(&|slab| slab.scattering / (slab.scattering + slab.absorption));
-        let through = Through {
-            reflected,
-            transmitted,
-            ballistic: depth,
-            flat_share: mean.t_mean
-                * mean.t_mean
-                * between_sides(reflected, transmitted, r_i, bare.eta),
+        let directions = directions(interface, &paths, bare.alpha);
+        let inner_mean = directions
+            .iter()
+            .map(|(_, weight, path)| weight * mean_inner_cosine(*path))
+            .sum();
+        let capture = [FRAC_1_SQRT_2, 1.0].map(|mu| mean_inner_cosine(paths.at(mu, bare.alpha)));
+        let albedo = albedo_of(bare, &mean).max(DVec3::splat(1e-3));
+        let whole = |at_capture: DVec3| {
+            let r_b = (albedo * at_capture).map(|a| {
+                let from_within = a * n2 * mean.capture;
+                (from_within / (1.0 + r_i * from_within)).min(1.0)
+            });
+            let slabs = r_b
+                .to_array()
+                .map(|r_b| slab.absorbing_to(r_b, r_i, inner_mean));
+            let split = Split::new(&slabs, r_b, r_i, bare.eta, inner_mean, &directions, capture);
+            (r_b, slabs, split)
         };
+        // What the photograph shows more or less than the mean over all directions follows from
+        // the paper, which follows from that mean.
+        let mut at_capture = DVec3::ONE;
+        for _ in 0..2 {
+            at_capture = whole(at_capture).2.at_capture;
+        }
+        let (r_b, slabs, split) = whole(at_capture);
+        let through = Through::new(
+            &slabs,
+            &mean,
+            r_i,
+            bare.eta,
+            inner_mean,
+            &directions,
+            interface,
+            bare.alpha,
+        );
         Self {
             bare: albedo,
-            film: Film::new(bare.eta, r_i, r_b),
-            split: Split::new(
-                omega * PI * (1.0 - r_i * r_b) / r_b.max(DVec3::splat(1e-3)),
-                depth.element_sum() / 3.0,
-                slab.phase,
-                bare.eta,
-            ),
+            film: Film::new(bare.eta, bare.alpha, interface, paths, r_i, r_b),
+            split,
             through,
         }
     }
 }
 
-/// T0/(n²[(1 − R0ρ)² − T0²ρ²]) with `rho` on both sides: light between two boundaries.
-fn between_sides(reflected: DVec3, transmitted: DVec3, rho: f64, eta: f64) -> DVec3 {
-    crossing(
-        reflected,
-        transmitted,
-        DVec3::splat(rho),
-        DVec3::splat(rho),
-        eta,
-    )
+/// A quantity of the slabs of all channels.
+fn per_channel(slabs: &[Slab; 3], of: impl Fn(&Slab) -> f64) -> DVec3 {
+    DVec3::from_array(slabs.each_ref().map(of))
 }
 
-/// T0/(n²[(1 − R0ρ_f)(1 − R0ρ_b) − T0²ρ_fρ_b]): what crosses the paper between two boundaries of
-/// internal reflectances ρ_f and ρ_b, all passes counted (Williams & Clapper's sum for two sides).
-pub fn crossing(r: DVec3, t: DVec3, rho_f: DVec3, rho_b: DVec3, eta: f64) -> DVec3 {
+/// Mean cosine of diffuse light within.
+const DIFFUSE_COSINE: f64 = 2.0 / 3.0;
+
+/// What crosses the paper between two boundaries of internal reflectances ρ_f, before it, and ρ_b,
+/// behind it, over n², all passes counted (Williams & Clapper's sum for two sides), for light
+/// that enters behind and leaves before at the mean cosines `m_b` and `m_f` within: of
+///
+/// T0/[(1 − R0ρ_f)(1 − R0ρ_b) − T0²ρ_fρ_b]
+///
+/// the first and the last pass are not those of diffuse light, as what enters steeply goes deeper.
+pub fn crossing(through: &Through, seen: &Seen, m_f: f64, m_b: f64, eta: f64) -> DVec3 {
+    // What crosses more is reflected less.
+    let t = (through.transmitted * seen.clear).min(through.reflected + through.transmitted);
+    let r = through.reflected + through.transmitted - t;
+    let (rho_f, rho_b) = (seen.rho_f, seen.rho_b);
+    let passed = through.transmitted_leaning * seen.clear;
+    let returned = through.reflected_leaning * t * seen.clear;
+    let before = (passed * (1.0 - r * rho_f) - returned * rho_f) * (m_f - DIFFUSE_COSINE);
+    let behind = (passed * (1.0 - r * rho_b) - returned * rho_b) * (m_b - DIFFUSE_COSINE);
     let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
-    t / (eta * eta * passes.max(DVec3::splat(1e-6)))
+    let crossed = (t + before + behind).max(DVec3::ZERO);
+    crossed / (eta * eta * passes.max(DVec3::splat(1e-6)))
 }
 
 /// Henyey & Greenstein's phase function in sr⁻¹ at the cosine of the deflection.
@@ -154,14 +220,30 @@ pub fn single_scatter(split: &Split, eta: f64, g: &Facing, inner_i: f64, inner_o
 }
 
 impl Split {
-    fn new(kappa: DVec3, depth: f64, phase: Phase, eta: f64) -> Self {
+    fn new(
+        slabs: &[Slab; 3],
+        r_b: DVec3,
+        r_i: f64,
+        eta: f64,
+        inner_mean: f64,
+        directions: &Directions,
+        capture: [f64; 2],
+    ) -> Self {
+        let depth = |slab: &Slab| (slab.scattering + slab.absorption) * slab.thickness;
+        let omega = |slab: &Slab| slab.scattering / (slab.scattering + slab.absorption);
         let mut split = Self {
-            kappa,
+            kappa: per_channel(slabs, omega) * PI * (1.0 - r_i * r_b) / r_b.max(DVec3::splat(1e-3)),
             mean: 0.0,
-            depth,
-            phase,
-            capture_path: capture_path(eta),
             at_capture: DVec3::ONE,
+            depth: per_channel(slabs, depth).element_sum() / 3.0,
+            leaning: {
+                let reflected = |slab: &Slab, inner| slab.with_boundaries(r_i, inner).0;
+                let mean = per_channel(slabs, |slab| reflected(slab, inner_mean));
+                -slope(slabs, reflected) / mean.max(DVec3::splat(1e-6))
+            },
+            inner_mean,
+            of_direction: DVec4::ZERO,
+            phase: slabs[0].phase,
         };
         let q = |mu_i: f64, mu_o: f64, cos_phi: f64| {
             let sines = ((1.0 - mu_i * mu_i) * (1.0 - mu_o * mu_o)).sqrt();
@@ -175,33 +257,111 @@ impl Split {
             let (inner_i, inner_o) = (inner_cosine(mu_i, eta), inner_cosine(mu_o, eta));
             single_scatter(&split, eta, &g, inner_i, inner_o)
         };
-        const GRID: u32 = 7;
         const TURNS: u32 = 16;
-        let mut mean = 0.0;
-        for i in 0..GRID {
-            for o in 0..GRID {
-                let [x, weight_i] = gauss_legendre(GRID, i);
-                let [y, weight_o] = gauss_legendre(GRID, o);
-                // 2μ dμ = d(μ²).
-                let (mu_i, mu_o) = ((0.5 + 0.5 * x).sqrt(), (0.5 + 0.5 * y).sqrt());
-                for turn in 0..TURNS {
-                    let phi = PI * (f64::from(turn) + 0.5) / f64::from(TURNS);
-                    mean += weight_i * weight_o * q(mu_i, mu_o, phi.cos()) / f64::from(TURNS);
-                }
-            }
-        }
+        let nodes = chebyshev::<4>();
+        let means = nodes.map(|v| {
+            let over_turns = |mu_o: f64| {
+                let turns = (0..TURNS).map(|turn| PI * (f64::from(turn) + 0.5) / f64::from(TURNS));
+                turns.map(|phi| q(v.sqrt(), mu_o, phi.cos())).sum::<f64>() / f64::from(TURNS)
+            };
+            let weighted = directions
+                .iter()
+                .map(|(mu, weight, _)| weight * over_turns(*mu));
+            weighted.sum::<f64>()
+        });
+        let of_direction = DVec4::from_array(through(&nodes, &means));
         let captured = q(FRAC_1_SQRT_2, 1.0, 0.0);
-        split.mean = mean;
+        split.of_direction = of_direction;
+        split.mean = directions
+            .iter()
+            .map(|(mu, weight, _)| weight * split_mean(&split, *mu))
+            .sum();
         // Where light is scattered only once, no more than all of it is.
-        split.kappa = kappa.min(DVec3::splat(1.0 / mean.max(1e-9)));
-        split.at_capture = 1.0 / (1.0 + split.kappa * (captured - mean)).max(DVec3::splat(1e-3));
+        split.kappa = split.kappa.min(DVec3::splat(1.0 / split.mean.max(1e-9)));
+        let shape = split_shape(&split, captured, FRAC_1_SQRT_2, 1.0, capture[0], capture[1]);
+        split.at_capture = 1.0 / shape.max(DVec3::splat(0.1));
         split
     }
 }
 
-/// 1 + κ(q − q̄), over the same in the geometry of capture.
-pub fn split_shape(split: &Split, q: f64) -> DVec3 {
-    (1.0 + split.kappa * (q - split.mean)).max(DVec3::ZERO) * split.at_capture
+/// df/dμ′ of a quantity of the slabs by the mean cosine of light that enters.
+fn slope(slabs: &[Slab; 3], of: impl Fn(&Slab, f64) -> f64) -> DVec3 {
+    // Between diffuse light and a beam along the normal.
+    per_channel(slabs, |slab| {
+        (of(slab, 1.0) - of(slab, DIFFUSE_COSINE)) / (1.0 - DIFFUSE_COSINE)
+    })
+}
+
+/// Mean of [`single_scatter`] over one hemisphere at the cosine `mu` in the other.
+pub fn split_mean(split: &Split, mu: f64) -> f64 {
+    let c = split.of_direction;
+    let v = mu * mu;
+    c.x + v * (c.y + v * (c.z + v * c.w))
+}
+
+/// What the paper sends from one direction into another, over its mean over all and over the
+/// same in the geometry of capture: `q` is [`single_scatter`], `m_i` and `m_o` the mean cosines
+/// within.
+pub fn split_shape(split: &Split, q: f64, mu_i: f64, mu_o: f64, m_i: f64, m_o: f64) -> DVec3 {
+    let once = q - split_mean(split, mu_i) - split_mean(split, mu_o) + split.mean;
+    let slanted = 2.0 * split.inner_mean - m_i - m_o;
+    (1.0 + split.kappa * once + split.leaning * slanted).max(DVec3::ZERO) * split.at_capture
+}
+
+impl Through {
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "all that a sheet's transmission depends on"
+    )]
+    fn new(
+        slabs: &[Slab; 3],
+        mean: &InterfaceMean,
+        r_i: f64,
+        eta: f64,
+        inner_mean: f64,
+        directions: &Directions,
+        interface: &InterfaceTable,
+        alpha: f64,
+    ) -> Self {
+        // Between no boundaries.
+        let free = |slab: &Slab, inner: f64| slab.with_boundaries(0.0, inner);
+        let ballistic = per_channel(slabs, |slab| {
+            (slab.scattering + slab.absorption) * slab.thickness
+        });
+        let mut through = Self {
+            reflected: per_channel(slabs, |slab| free(slab, DIFFUSE_COSINE).0),
+            inner_mean,
+            transmitted: per_channel(slabs, |slab| free(slab, DIFFUSE_COSINE).1),
+            ballistic,
+            reflected_leaning: -slope(slabs, |slab, inner| free(slab, inner).0),
+            transmitted_leaning: slope(slabs, |slab, inner| free(slab, inner).1),
+            straight_mean: directions
+                .iter()
+                .map(|(mu, weight, path)| {
+                    *weight * interface.at(*mu, alpha).t * crossed(*path, ballistic)
+                })
+                .sum(),
+            flat_share: DVec3::ZERO,
+        };
+        let bare = Seen {
+            depth_f: DVec3::ZERO,
+            clear: 1.0,
+            depth_b: DVec3::ZERO,
+            rho_f: DVec3::splat(r_i),
+            rho_b: DVec3::splat(r_i),
+        };
+        through.flat_share =
+            crossing(&through, &bare, inner_mean, inner_mean, eta) * (mean.t_mean * mean.t_mean);
+        through
+    }
+}
+
+/// Ways of light through a spot's film: in the geometry of capture, of the light, to the eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ways {
+    pub capture: DVec4,
+    pub path_i: DVec4,
+    pub path_o: DVec4,
 }
 
 /// The study tier without the cosine: gallery with the ink's own path, single scattering apart,
@@ -220,14 +380,20 @@ pub fn brdf_study(
     mean: &InterfaceMean,
     split: &Split,
     depth: DVec3,
+    ways: &Ways,
     particle: &Particle,
     shares: &Shares,
 ) -> DVec3 {
     let (inner_i, inner_o) = (inner_cosine(g.mu_i, s.eta), inner_cosine(g.mu_o, s.eta));
     let q = single_scatter(split, s.eta, g, inner_i, inner_o);
-    let through_ink = beyond_capture(depth, split.capture_path, inner_i, inner_o);
+    let (m_i, m_o) = (
+        mean_inner_cosine(ways.path_i),
+        mean_inner_cosine(ways.path_o),
+    );
+    let shape = split_shape(split, q, g.mu_i, g.mu_o, m_i, m_o);
+    let through_ink = beyond_capture(depth, ways.capture, ways.path_i, ways.path_o);
     let coupled = at_i.t * at_o.t * mean.capture;
-    let paper = shares.paper * coupled * through_ink * split_shape(split, q);
+    let paper = shares.paper * coupled * through_ink * shape;
     let gloss = brdf_gallery_specular(s, g, at_i, at_o, mean) * (1.0 - particle.covered);
     (paper + shares.particles) / PI + DVec3::splat(gloss)
 }
@@ -301,48 +467,49 @@ pub struct Seen {
     pub rho_b: DVec3,
 }
 
-/// T0 of a spot that is `clear` times as transparent as the sheet: what crosses more is
-/// reflected less.
-pub fn spot_transmitted(through: &Through, clear: f64) -> DVec3 {
-    (through.transmitted * clear).min(through.reflected + through.transmitted)
-}
-
-/// [`crossing`] of a spot.
-pub fn spot_crossing(through: &Through, seen: &Seen, eta: f64) -> DVec3 {
-    let t = spot_transmitted(through, seen.clear);
-    let r = through.reflected + through.transmitted - t;
-    crossing(r, t, seen.rho_f, seen.rho_b, eta)
-}
-
-/// Share of the radiance of an even light table behind the sheet that an eye at cosine `mu_o`
-/// sees through it: scattered, and straight through.
+/// Share of the radiance of an even light table behind the sheet that an eye sees through it
+/// along `path_o`: scattered, and straight through.
 pub fn through_study(
     film: &Film,
     through: &Through,
     seen: &Seen,
     at_o: &Interface,
     mean: &InterfaceMean,
-    mu_o: f64,
+    path_o: DVec4,
     eta: f64,
 ) -> DVec3 {
-    let inner_o = inner_cosine(mu_o.max(MU_MIN), eta);
-    let front = at_o.t * (-seen.depth_f / inner_o).exp();
-    let scattered =
-        spot_crossing(through, seen, eta) * diffuse_share(film, seen.depth_b) * mean.t_mean;
-    let straight = at_o.t * (-(seen.depth_b + through.ballistic) / inner_o).exp();
-    front * (scattered + straight)
+    let straight = at_o.t * crossed(path_o, through.ballistic);
+    let (m_o, m_i) = (mean_inner_cosine(path_o), through.inner_mean);
+    let whole = crossing(through, seen, m_o, m_i, eta) * mean.t_mean;
+    // Diffusion counts what goes straight through too.
+    let scattered = (whole - straight).max(DVec3::ZERO) * crossed(film.diffuse_path, seen.depth_b);
+    let front = at_o.t * crossed(path_o, seen.depth_f);
+    front * (scattered + straight * crossed(path_o, seen.depth_b))
 }
 
-/// BTDF without the cosine, for a lamp behind the sheet at cosine `g.mu_i` from its back.
+/// BTDF without the cosine of what the sheet scatters, for a lamp behind it whose light enters
+/// along `path_i`.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the shader's twin has no structs to borrow"
+)]
 pub fn btdf_study(
     through: &Through,
     seen: &Seen,
-    g: &Facing,
     at_i: &Interface,
     at_o: &Interface,
+    mean: &InterfaceMean,
+    path_i: DVec4,
+    path_o: DVec4,
     eta: f64,
 ) -> DVec3 {
-    let (inner_i, inner_o) = (inner_cosine(g.mu_i, eta), inner_cosine(g.mu_o, eta));
-    let inks = (-seen.depth_f / inner_o - seen.depth_b / inner_i).exp();
-    inks * spot_crossing(through, seen, eta) * (at_i.t * at_o.t / PI)
+    let inks = crossed(path_o, seen.depth_f) * crossed(path_i, seen.depth_b);
+    let (m_o, m_i) = (mean_inner_cosine(path_o), mean_inner_cosine(path_i));
+    let whole = crossing(through, seen, m_o, m_i, eta);
+    // What goes straight through is in one direction only.
+    let straight_i = at_i.t * crossed(path_i, through.ballistic);
+    let straight_o = at_o.t * crossed(path_o, through.ballistic);
+    let straight =
+        straight_i * straight_o / (through.straight_mean * mean.t_mean).max(DVec3::splat(1e-30));
+    inks * (whole - straight).max(DVec3::ZERO) * (at_i.t * at_o.t / PI)
 }

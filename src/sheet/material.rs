@@ -223,6 +223,10 @@ impl Material for PaperMaterial {
             ("TIER_GALLERY", terms.tier == Tier::Gallery),
             ("TIER_STUDY", terms.tier == Tier::Study),
             ("COUPLED", terms.tier.is_coupled()),
+            (
+                "PATHS",
+                terms.tier == Tier::Study || terms.tier.is_coupled() && terms.transmission,
+            ),
             ("TRANSMISSION", terms.transmission),
             ("TRANSMISSION_MAP", terms.transmission_map),
             ("OTHER_ALBEDO", terms.other_albedo),

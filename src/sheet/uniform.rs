@@ -13,6 +13,7 @@ use crate::{
         medium::ParticleConstants,
         microfacet::ALPHA_MIN,
         quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
+        refraction::{PATH_ALPHA, PATH_MU},
         study::{Split, Study, Through},
         table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
     },
@@ -228,7 +229,7 @@ impl FilmUniform {
         Self {
             excess: film.excess.map(narrow),
             internal: film.internal.map(narrow),
-            diffuse_path: DVec4::from_array(film.diffuse_path).as_vec4(),
+            diffuse_path: film.diffuse_path.as_vec4(),
         }
     }
 }
@@ -240,10 +241,12 @@ pub struct SplitUniform {
     pub mean: f32,
     pub at_capture: Vec3,
     pub depth: f32,
+    pub leaning: Vec3,
+    pub inner_mean: f32,
+    pub of_direction: Vec4,
     pub forward_share: f32,
     pub g_forward: f32,
     pub g_backward: f32,
-    pub capture_path: f32,
 }
 
 impl SplitUniform {
@@ -254,10 +257,12 @@ impl SplitUniform {
             mean: split.mean as f32,
             at_capture: split.at_capture.as_vec3(),
             depth: split.depth as f32,
+            leaning: split.leaning.as_vec3(),
+            inner_mean: split.inner_mean as f32,
+            of_direction: split.of_direction.as_vec4(),
             forward_share: split.phase.forward_share as f32,
             g_forward: split.phase.g_forward as f32,
             g_backward: split.phase.g_backward as f32,
-            capture_path: split.capture_path as f32,
         }
     }
 }
@@ -266,8 +271,12 @@ impl SplitUniform {
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
 pub struct ThroughUniform {
     pub reflected: Vec3,
+    pub inner_mean: f32,
     pub transmitted: Vec3,
     pub ballistic: Vec3,
+    pub reflected_leaning: Vec3,
+    pub transmitted_leaning: Vec3,
+    pub straight_mean: Vec3,
     pub flat_share: Vec3,
 }
 
@@ -276,8 +285,12 @@ impl ThroughUniform {
     pub fn new(through: &Through) -> Self {
         Self {
             reflected: through.reflected.as_vec3(),
+            inner_mean: through.inner_mean as f32,
             transmitted: through.transmitted.as_vec3(),
             ballistic: through.ballistic.as_vec3(),
+            reflected_leaning: through.reflected_leaning.as_vec3(),
+            transmitted_leaning: through.transmitted_leaning.as_vec3(),
+            straight_mean: through.straight_mean.as_vec3(),
             flat_share: through.flat_share.as_vec3(),
         }
     }
@@ -315,6 +328,7 @@ pub struct PaperUniform {
     pub overlays: [MapPlace; MAX_OVERLAYS],
     pub quadrature: [Vec4; GAUSS_LEGENDRE.len()],
     pub film: FilmUniform,
+    pub paths: [Vec4; PATH_MU * PATH_ALPHA],
     pub split: SplitUniform,
     pub through: ThroughUniform,
     pub lit_bare: Vec3,
@@ -348,9 +362,11 @@ impl PaperUniform {
     /// Sets what the side is made of.
     pub fn set_study(&mut self, study: &Study) {
         self.film = FilmUniform::new(&study.film);
+        for (slot, path) in self.paths.iter_mut().zip(&study.film.paths.nodes) {
+            *slot = path.as_vec4();
+        }
         self.split = SplitUniform::new(&study.split);
         self.through = ThroughUniform::new(&study.through);
-        self.lit_bare = study.bare.as_vec3();
     }
 
     /// Sets the lamps, given in the table frame.

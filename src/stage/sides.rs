@@ -19,6 +19,7 @@ use crate::{
         fresnel::normal_reflectance,
         microfacet::ALPHA_MIN,
         photometry::Photometry,
+        refraction::PathTable,
         slab::{Phase, Slab, UM_PER_MM},
         study::Study,
         table::InterfaceTable,
@@ -232,24 +233,27 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
     uniform.f_capture = seen.f_capture as f32;
     uniform.lit_bare = seen.albedo.as_vec3();
     uniform.other_bare = other.albedo.as_vec3();
-    if side.terms.tier.is_coupled() || side.terms.transmission {
+    let varies = side.terms.roughness_map || side.terms.normal_map;
+    if side.terms.tier.is_coupled() {
         let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
         let mean = here.mean_at(paper.roughness);
-        let study = Study::new(&seen, &mean, slab(paper));
-        uniform.set_study(&study);
-        if side.terms.tier.is_coupled() {
-            uniform.other_bare = albedo_of(&other, &mean).max(DVec3::splat(1e-3)).as_vec3();
-        } else {
-            uniform.lit_bare = seen.albedo.as_vec3();
-        }
-    }
-    if side.terms.tier.is_coupled() {
-        let table = if side.terms.roughness_map || side.terms.normal_map {
+        let lit = |of: &tier::Surface| albedo_of(of, &mean).max(DVec3::splat(1e-3)).as_vec3();
+        (uniform.lit_bare, uniform.other_bare) = (lit(&seen), lit(&other));
+        let table = if varies {
             InterfaceTable::new(paper.index, paper.specular)
         } else {
-            InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular)
+            here
         };
         uniform.interface_table = InterfaceUniform::new(&table);
+    }
+    if side.terms.tier == Tier::Study || side.terms.transmission {
+        let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
+        let paths = if varies {
+            PathTable::new(paper.index)
+        } else {
+            Arc::new(PathTable::at_roughness(paper.roughness, paper.index))
+        };
+        uniform.set_study(&Study::new(&seen, &here, paths, slab(paper)));
     }
     for (slot, particle) in uniform.particles.iter_mut().zip(&side.particles) {
         *slot = ParticleUniform::new(particle);

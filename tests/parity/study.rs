@@ -5,11 +5,12 @@ use crate::interfaces::words;
 use recto::{
     optics::{
         fresnel::fresnel_conductor,
-        ink::{internal_reflectance, optical_depth},
+        ink::{capture_path, internal_reflectance, optical_depth},
         microfacet::{d_ggx_anisotropic, v_smith_anisotropic},
+        refraction::{PathTable, path_alpha, path_between, path_mu},
         slab::{Phase, Slab},
         study::{
-            Particle, Seen, Study, brdf_particles, brdf_study, btdf_study, particle_shares,
+            Particle, Seen, Study, Ways, brdf_particles, brdf_study, btdf_study, particle_shares,
             through_study,
         },
     },
@@ -79,6 +80,43 @@ fn facets_of_metal_and_of_combed_paper() {
         .unwrap();
 }
 
+fn places_and_paths() -> Twins {
+    let seeded = Seeded::new(14);
+    Twins {
+        name: "path_mu, path_alpha, path_between",
+        body: "found[to] = path_mu(given[at]);
+            found[to + 1u] = path_alpha(given[at + 1u]);
+            let p = path_between(vec4(given[at + 2u]), vec4(given[at + 3u]),
+                vec4(given[at + 4u]), vec4(given[at + 5u]), given[at], given[at + 1u]);
+            found[to + 2u] = p.w;"
+            .into(),
+        twin: |x| {
+            let [a, b, c, d] = [2, 3, 4, 5].map(|i| DVec4::splat(x[i]));
+            let between = path_between(a, b, c, d, x[0], x[1]).w;
+            vec![path_mu(x[0]), path_alpha(x[1]), between]
+        },
+        relative: |_| RELATIVE,
+        cases: (0..100_000)
+            .map(|_| {
+                let (mu, alpha) = (seeded.log_or_zero(1e-9, 1.0), seeded.log(1e-4, 1.0));
+                let node = || seeded.log(1.0, 100.0);
+                [mu, alpha, node(), node(), node(), node()]
+                    .map(|x| x as f32)
+                    .to_vec()
+            })
+            .collect(),
+    }
+}
+
+#[test]
+fn paths_between_nodes() {
+    // The root of the least roughness is taken from those of others.
+    const ROOTS: f64 = 4e-6;
+    places_and_paths()
+        .compare_rounded(&Gpu::new(), PAPER_BSDF, |_| ROOTS)
+        .unwrap();
+}
+
 /// Papers at the extremes: index, roughness, bare albedo, σs, thickness in mm, phase.
 fn papers() -> Vec<(String, Surface, InterfaceMean, Study)> {
     let phases = [[1.0, 0.33, 0.0], [0.5, 0.99, -0.99], [0.0, 0.0, 0.0]];
@@ -106,14 +144,22 @@ fn papers() -> Vec<(String, Surface, InterfaceMean, Study)> {
             },
         };
         let name = format!("n {index}, α {alpha}, albedo {bare}, σs {scattering}, d {thickness}");
-        (name, surface, mean, Study::new(&surface, &mean, slab))
+        let paths = Arc::new(PathTable::at_roughness(alpha, index));
+        (
+            name,
+            surface,
+            mean,
+            Study::new(&surface, &table, paths, slab),
+        )
     })
     .collect()
 }
 
-const NUMBERS: usize = 26;
+const NUMBERS: usize = 39;
+/// Where a case's paths begin.
+const PATHS: usize = 27;
 
-fn spots() -> Vec<Vec<f32>> {
+fn spots(paper: &Surface, study: &Study) -> Vec<Vec<f32>> {
     let seeded = Seeded::new(13);
     (0..100_000)
         .map(|_| {
@@ -131,7 +177,12 @@ fn spots() -> Vec<Vec<f32>> {
                 share(),
                 seeded.log_or_zero(1e-3, 10.0),
             ]);
-            case.extend([0.0, share(), 0.0]);
+            case.extend([0.0, share(), 0.0, 0.0]);
+            let paths = &study.film.paths;
+            case.extend(capture_path(paths, paper.alpha).to_array());
+            for mu in [case[0], case[1]] {
+                case.extend(paths.at(mu, paper.alpha).to_array());
+            }
             case.iter().map(|&x| x as f32).collect()
         })
         .collect()
@@ -167,10 +218,15 @@ fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVe
         albedo: front,
         ..*paper
     };
-    let depth = optical_depth(&study.film, study.film.capture_path, front) * x[24];
+    let ways = Ways {
+        capture: DVec4::from_slice(&x[PATHS..]),
+        path_i: DVec4::from_slice(&x[PATHS + 4..]),
+        path_o: DVec4::from_slice(&x[PATHS + 8..]),
+    };
+    let depth = optical_depth(&study.film, ways.capture, front) * x[24];
     let seen = Seen {
         depth_f: depth,
-        depth_b: optical_depth(&study.film, study.film.capture_path, back),
+        depth_b: optical_depth(&study.film, ways.capture, back),
         rho_f: internal_reflectance(&study.film, front),
         rho_b: internal_reflectance(&study.film, back),
         clear: x[22],
@@ -178,10 +234,21 @@ fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVe
     let shares = particle_shares(&s, mean, study.bare, &particle);
     let (split, through) = (&study.split, &study.through);
     [
-        brdf_study(&s, &g, &at_i, &at_o, mean, split, depth, &particle, &shares),
+        brdf_study(
+            &s, &g, &at_i, &at_o, mean, split, depth, &ways, &particle, &shares,
+        ),
         brdf_particles(&shares, &particle, &g),
-        through_study(&study.film, through, &seen, &at_o, mean, g.mu_o, s.eta),
-        btdf_study(through, &seen, &g, &at_i, &at_o, s.eta),
+        through_study(&study.film, through, &seen, &at_o, mean, ways.path_o, s.eta),
+        btdf_study(
+            through,
+            &seen,
+            &at_i,
+            &at_o,
+            mean,
+            ways.path_i,
+            ways.path_o,
+            s.eta,
+        ),
     ]
 }
 
@@ -216,8 +283,8 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
     let narrow = |x: f32| literal(f64::from(x));
     let text = format!(
         "let film = Film(array({}), array({}), {});
-        let split = Split({}, {}, {}, {}, {}, {}, {}, {});
-        let through = Through({}, {}, {}, {});
+        let split = Split({}, {}, {}, {}, {}, {}, {}, {}, {}, {});
+        let through = Through({}, {}, {}, {}, {}, {}, {}, {});
         let bare = {};",
         excess.join(", "),
         internal.join(", "),
@@ -226,13 +293,22 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
         narrow(split.mean),
         wide(split.at_capture),
         narrow(split.depth),
+        wide(split.leaning),
+        narrow(split.inner_mean),
+        format!(
+            "vec4({})",
+            split.of_direction.to_array().map(narrow).join(", ")
+        ),
         narrow(split.forward_share),
         narrow(split.g_forward),
         narrow(split.g_backward),
-        narrow(split.capture_path),
         wide(through.reflected),
+        narrow(through.inner_mean),
         wide(through.transmitted),
         wide(through.ballistic),
+        wide(through.reflected_leaning),
+        wide(through.transmitted_leaning),
+        wide(through.straight_mean),
         wide(through.flat_share),
         colour(study.bare),
     );
@@ -243,7 +319,12 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
 fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String> {
     let (name, paper, mean, study) = papers().swap_remove(number);
     let (film, constants) = constants(&study);
-    let cases = spots();
+    let cases = spots(&paper, &study);
+    let path = |i: usize| {
+        let at = |k: usize| format!("given[at + {}u]", PATHS + 4 * i + k);
+        format!("vec4({}, {}, {}, {})", at(0), at(1), at(2), at(3))
+    };
+    let (capture, path_i, path_o) = (path(0), path(1), path(2));
     let body = format!(
         "{constants}
         let at = {}u + index * {NUMBERS}u;
@@ -256,14 +337,15 @@ fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String>
         let mean = InterfaceMean({}, {}, {}, {});
         let particle = Particle(vec3(given[at + 14u], given[at + 15u], given[at + 16u]),
             given[at + 20u], vec3(given[at + 17u], given[at + 18u], given[at + 19u]), given[at + 21u]);
-        let depth = optical_depth(film, split.capture_path, front) * given[at + 24u];
-        let seen = Seen(depth, given[at + 22u], optical_depth(film, split.capture_path, back),
+        let ways = Ways({capture}, {path_i}, {path_o});
+        let depth = optical_depth(film, ways.capture, front) * given[at + 24u];
+        let seen = Seen(depth, given[at + 22u], optical_depth(film, ways.capture, back),
             internal_reflectance(film, front), internal_reflectance(film, back));
         let shares = particle_shares(s, mean, bare, particle);
-        let a = brdf_study(s, g, at_i, at_o, mean, split, depth, particle, shares);
+        let a = brdf_study(s, g, at_i, at_o, mean, split, depth, ways, particle, shares);
         let b = brdf_particles(shares, particle, g);
-        let c = through_study(film, through, seen, at_o, mean, g.mu_o, s.eta);
-        let d = btdf_study(through, seen, g, at_i, at_o, s.eta);
+        let c = through_study(film, through, seen, at_o, mean, ways.path_o, s.eta);
+        let d = btdf_study(through, seen, at_i, at_o, mean, ways.path_i, ways.path_o, s.eta);
         found[to] = a.x; found[to + 1u] = a.y; found[to + 2u] = a.z;
         found[to + 3u] = b.x; found[to + 4u] = b.y; found[to + 5u] = b.z;
         found[to + 6u] = c.x; found[to + 7u] = c.y; found[to + 8u] = c.z;
@@ -336,8 +418,8 @@ fn a_broken_study_is_found() {
     let gpu = Gpu::new();
     for (sound, wrong) in [
         (
-            "1.0 / inner_i + 1.0 / inner_o - capture_path",
-            "1.0 / inner_i + 1.0 / inner_o",
+            "let path = path_i + path_o - capture;",
+            "let path = path_i + path_o;",
         ),
         ("- t * t * rho_f * rho_b", "+ t * t * rho_f * rho_b"),
         ("(1.0 - g * g) / (d * sqrt(d))", "(1.0 - g * g) / d"),

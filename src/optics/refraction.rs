@@ -1,0 +1,440 @@
+//! Where light goes that a rough interface lets in, and how far it then travels in a film.
+//!
+//! A smooth interface refracts a ray into one direction, whose way through a film of unit depth
+//! is 1/μ′. Facets spread it: some of what enters runs flat through the film, and light at a
+//! low angle comes in by facets that face it. The share that crosses a film of depth τ along
+//! the normal is the mean of e^(−τ/μ′) over all that enters, written as e^(−τP): P, the
+//! effective path, falls with τ, as what runs flat is lost first. With one direction for all
+//! light, dark ink under matte paper comes out up to 63% too bright at a slant (measured at
+//! α = .4, τ = 2, 60°); with this mean it is within 3%.
+//!
+//! The directions are found by a walk on the facets (Heitz, Hanika, d'Eon & Dachsbacher 2016)
+//! over a fixed low-discrepancy sequence (Roberts 2018), so that the same constants give the
+//! same table.
+
+use std::{
+    f64::consts::TAU,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use glam::{DVec3, DVec4};
+use rayon::prelude::*;
+
+use super::{
+    fresnel::fresnel_dielectric,
+    ink::inner_cosine,
+    quadrature::{chebyshev, through},
+    table::ALPHA_FIT_MIN,
+};
+
+/// Nodes over √μ, from 0 to 1.
+pub const PATH_MU: usize = 12;
+/// Nodes over √α, from the square root of [`ALPHA_FIT_MIN`] to 1.
+pub const PATH_ALPHA: usize = 8;
+/// Coefficients of P over powers of w = τ/(1 + τ).
+const TERMS: usize = 4;
+/// Walks of one node.
+const WALKS: u32 = 4096;
+/// Smoother than this, an interface refracts as a plane.
+const ALPHA_SMOOTH: f64 = 1e-3;
+/// Indices nearer to 1 than this refract nothing.
+const INDEX_MATCHED: f64 = 1e-4;
+/// Facets that one ray meets; hardly one in a million meets as many.
+const MEETINGS_MAX: u32 = 64;
+/// ln u is kept above this, so that a ray deep among the facets still comes out.
+const LN_U_MIN: f64 = -700.0;
+
+/// Effective paths through a film under an interface of one index, for every direction and
+/// roughness: coefficients of P over powers of w.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathTable {
+    /// [`PATH_MU`] nodes for the first roughness, then for the next.
+    pub nodes: Vec<DVec4>,
+}
+
+/// The last tables made, by index: a table takes tens of milliseconds.
+static MADE: Mutex<Vec<(f64, Arc<PathTable>)>> = Mutex::new(Vec::new());
+/// How many are kept.
+const KEPT: usize = 8;
+
+impl PathTable {
+    /// For an interface of index `n` (≥ 1), for every roughness from [`ALPHA_FIT_MIN`] on.
+    pub fn new(n: f64) -> Arc<Self> {
+        // A table is whole or not there: nothing is left half done where a thread panicked.
+        let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, table)) = made.iter().find(|(index, _)| *index == n) {
+            return Arc::clone(table);
+        }
+        let low = ALPHA_FIT_MIN.sqrt();
+        let nodes = (0..PATH_ALPHA * PATH_MU)
+            .into_par_iter()
+            .map(|i| {
+                let s = low + (1.0 - low) * (i / PATH_MU) as f64 / (PATH_ALPHA - 1) as f64;
+                effective_path(node_mu(i % PATH_MU), s * s, n)
+            })
+            .collect();
+        let table = Arc::new(Self { nodes });
+        if made.len() >= KEPT {
+            made.remove(0);
+        }
+        made.push((n, Arc::clone(&table)));
+        table
+    }
+
+    /// The same at one roughness (in [0, 1]), whatever it is later asked for.
+    pub fn at_roughness(alpha: f64, n: f64) -> Self {
+        let row: Vec<DVec4> = (0..PATH_MU)
+            .into_par_iter()
+            .map(|i| effective_path(node_mu(i), alpha, n))
+            .collect();
+        Self {
+            nodes: row.repeat(PATH_ALPHA),
+        }
+    }
+
+    /// At cosine `mu` in air and roughness `alpha`, both in [0, 1].
+    pub fn at(&self, mu: f64, alpha: f64) -> DVec4 {
+        let (x, s) = (path_mu(mu), path_alpha(alpha));
+        let i = (x as usize).min(PATH_MU - 2);
+        let j = (s as usize).min(PATH_ALPHA - 2);
+        let node = |i: usize, j: usize| self.nodes[j * PATH_MU + i];
+        path_between(
+            node(i, j),
+            node(i + 1, j),
+            node(i, j + 1),
+            node(i + 1, j + 1),
+            x - i as f64,
+            s - j as f64,
+        )
+    }
+}
+
+fn node_mu(i: usize) -> f64 {
+    let x = i as f64 / (PATH_MU - 1) as f64;
+    x * x
+}
+
+/// Place of the cosine `mu` between the nodes of a table, from 0 to [`PATH_MU`] − 1.
+pub fn path_mu(mu: f64) -> f64 {
+    mu.clamp(0.0, 1.0).sqrt() * (PATH_MU - 1) as f64
+}
+
+/// Place of the roughness `alpha` between the nodes of a table, from 0 to [`PATH_ALPHA`] − 1.
+pub fn path_alpha(alpha: f64) -> f64 {
+    let low = ALPHA_FIT_MIN.sqrt();
+    (alpha.clamp(ALPHA_FIT_MIN, 1.0).sqrt() - low) * ((PATH_ALPHA - 1) as f64 / (1.0 - low))
+}
+
+/// Between four nodes: `a` and `b` at the lower roughness, `c` and `d` at the higher, `a` and `c`
+/// at the lower cosine.
+pub fn path_between(a: DVec4, b: DVec4, c: DVec4, d: DVec4, x: f64, s: f64) -> DVec4 {
+    a.lerp(b, x).lerp(c.lerp(d, x), s)
+}
+
+/// The share of light that crosses a film of depth `tau` per channel (≥ 0) along `path`: e^(−τP).
+/// No way through it is shorter than the film is deep, also where it is deeper than was fitted.
+pub fn crossed(path: DVec4, tau: DVec3) -> DVec3 {
+    let w = tau / (1.0 + tau);
+    let p = path.x + w * (path.y + w * (path.z + w * path.w));
+    (-tau * p.max(DVec3::ONE)).exp()
+}
+
+/// Mean cosine μ′ of the light along `path`: that of one direction which a film of depth 1
+/// dims as much. Within 1.5% of the mean itself for α up to 1 (measured, n = 1.5).
+pub fn mean_inner_cosine(path: DVec4) -> f64 {
+    1.0 / (path.x + 0.5 * (path.y + 0.5 * (path.z + 0.5 * path.w))).max(1.0)
+}
+
+/// P at one direction and roughness, through four depths.
+fn effective_path(mu: f64, alpha: f64, n: f64) -> DVec4 {
+    let cosines = inner_cosines(mu, alpha, n);
+    // Deeper films let a thousandth through, and less.
+    const FITTED: f64 = 8.0;
+    let nodes = chebyshev::<TERMS>().map(|v| v * FITTED / (1.0 + FITTED));
+    let paths = nodes.map(|w| {
+        let tau = w / (1.0 - w);
+        let share = mean(cosines.iter().map(|mu| (-tau / mu).exp()));
+        -share.max(f64::MIN_POSITIVE).ln() / tau
+    });
+    DVec4::from_array(through(&nodes, &paths))
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0u32), |(sum, count), value| (sum + value, count + 1));
+    sum / f64::from(count.max(1))
+}
+
+/// Cosines μ′ of light that arrives at cosine `mu` and has entered, each as likely as the others.
+fn inner_cosines(mu: f64, alpha: f64, n: f64) -> Vec<f64> {
+    if alpha < ALPHA_SMOOTH || n - 1.0 < INDEX_MATCHED {
+        return vec![inner_cosine(mu, n).max(1e-3)];
+    }
+    let w = direction(mu);
+    (0..WALKS)
+        .map(|k| walk(w, true, alpha, n, Numbers::new(k)))
+        .filter(|end| !end.in_air)
+        .map(|end| end.cosine)
+        .collect()
+}
+
+/// A direction at cosine `mu`. Light in the very plane of the surface meets nothing.
+fn direction(mu: f64) -> DVec3 {
+    let mu = mu.max(1e-3);
+    DVec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu)
+}
+
+/// E₂: the share of the light that arrives from the air at cosine `mu` and leaves into it after it
+/// has met two facets or more, in [0, 1], by `walks` walks; few of them end so.
+pub(super) fn sent_back_late(mu: f64, alpha: f64, n: f64, walks: u32) -> f64 {
+    if alpha < ALPHA_SMOOTH || n - 1.0 < INDEX_MATCHED {
+        return 0.0;
+    }
+    let w = direction(mu);
+    let late = (0..walks)
+        .map(|k| walk(w, true, alpha, n, Numbers::new(k)))
+        .filter(|end| end.in_air && end.meetings > 1)
+        .count();
+    late as f64 / f64::from(walks)
+}
+
+/// Ways that diffuse light takes through a film of unit depth to the interface above it, from
+/// inside, and back: (1/μ + 1/μ″, share of what comes back), few enough to sum over.
+pub fn ways_back(alpha: f64, n: f64) -> Vec<(f64, f64)> {
+    const DIRECTIONS: u32 = 64;
+    const WALKS: u32 = 128;
+    const BINS: usize = 128;
+    let mut bins = [(0.0, 0.0); BINS];
+    let mut add = |way: f64, weight: f64| {
+        let bin = ((BINS as f64 * 2.0 / way) as usize).min(BINS - 1);
+        bins[bin].0 += way * weight;
+        bins[bin].1 += weight;
+    };
+    for i in 0..DIRECTIONS {
+        // Finer towards grazing light; 2μ dμ.
+        let v = (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
+        let mu = v * v;
+        let weight = 4.0 * mu * v / f64::from(DIRECTIONS);
+        if alpha < ALPHA_SMOOTH || n - 1.0 < INDEX_MATCHED {
+            add(2.0 / mu, weight * fresnel_dielectric(mu, 1.0 / n));
+            continue;
+        }
+        let w = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
+        for k in 0..WALKS {
+            let numbers = Numbers::new(i * WALKS + k);
+            let end = walk(w, false, alpha, n, numbers);
+            if !end.in_air {
+                add(1.0 / mu + 1.0 / end.cosine, weight / f64::from(WALKS));
+            }
+        }
+    }
+    let all: f64 = bins.iter().map(|(_, weight)| weight).sum();
+    bins.iter()
+        .filter(|(_, weight)| *weight > 0.0)
+        .map(|(way, weight)| (way / weight, weight / all.max(f64::MIN_POSITIVE)))
+        .collect()
+}
+
+/// Numbers in [0, 1) for one walk: the first two facets from a sequence that leaves no gaps
+/// between the walks, the rest by a hash.
+struct Numbers {
+    walk: u32,
+    used: u32,
+}
+
+/// Numbers that a facet takes.
+const PER_FACET: u32 = 4;
+/// Dimensions of the sequence.
+const EVEN: u32 = 2 * PER_FACET;
+/// The root of g⁹ = g + 1, whose powers are the sequence's steps in eight dimensions.
+const GOLDEN: f64 = 1.085_070_245_491_450_8;
+
+impl Numbers {
+    fn new(walk: u32) -> Self {
+        Self { walk, used: 0 }
+    }
+
+    fn next(&mut self) -> f64 {
+        self.used += 1;
+        if self.used <= EVEN {
+            let step = GOLDEN.powi(-(self.used as i32));
+            return (0.5 + f64::from(self.walk) * step).fract();
+        }
+        // SplitMix64's mixing (Steele, Lea & Flood 2014).
+        let mut z =
+            (u64::from(self.walk) << 32 | u64::from(self.used)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Where a walk leaves the facets.
+struct End {
+    in_air: bool,
+    cosine: f64,
+    meetings: u32,
+}
+
+/// From the direction `w` that light comes from, on the side of the air or not. Both sides have a
+/// frame of their own, whose z leads away from the facets.
+fn walk(w: DVec3, mut in_air: bool, alpha: f64, n: f64, mut numbers: Numbers) -> End {
+    let mut d = -w;
+    let mut ln_u: f64 = 0.0;
+    let mut meetings = 0;
+    while meetings < MEETINGS_MAX {
+        let seen = projected(-d, alpha);
+        let free = -(1.0 - numbers.next()).ln();
+        // Straight up, no facet is seen.
+        if seen <= 0.0 {
+            break;
+        }
+        ln_u += free * d.z / seen;
+        if ln_u >= 0.0 {
+            break;
+        }
+        ln_u = ln_u.max(LN_U_MIN);
+        meetings += 1;
+        let h = visible_facet(-d, alpha, numbers.next(), TAU * numbers.next());
+        let cos_i = (-d).dot(h).clamp(0.0, 1.0);
+        let eta = if in_air { n } else { 1.0 / n };
+        if numbers.next() < fresnel_dielectric(cos_i, eta) {
+            d = (2.0 * cos_i * h + d).normalize();
+        } else {
+            let cos_t = inner_cosine(cos_i, eta);
+            d = -(d / eta + (cos_i / eta - cos_t) * h).normalize();
+            in_air = !in_air;
+            ln_u = (-ln_u.exp_m1()).ln().max(LN_U_MIN);
+        }
+    }
+    End {
+        in_air,
+        cosine: d.z.max(1e-3),
+        meetings,
+    }
+}
+
+/// Area of facets, by that of the surface, that are seen from `w` (Heitz et al. 2016, eq. 7).
+fn projected(w: DVec3, alpha: f64) -> f64 {
+    let a2_sin2 = alpha * alpha * (w.x * w.x + w.y * w.y);
+    let root = (w.z * w.z + a2_sin2).sqrt();
+    if w.z >= 0.0 {
+        0.5 * (w.z + root)
+    } else {
+        // Seen from below: without the difference of two near numbers.
+        0.5 * a2_sin2 / (root - w.z)
+    }
+}
+
+/// A facet that is seen from `w`, also from below, by two even numbers (Dupuy & Benyoub 2023).
+fn visible_facet(w: DVec3, alpha: f64, u: f64, phi: f64) -> DVec3 {
+    let v = DVec3::new(alpha * w.x, alpha * w.y, w.z).normalize();
+    let h_z = u * (1.0 + v.z);
+    let c_z = h_z - v.z;
+    let sin = (1.0 - c_z * c_z).max(0.0).sqrt();
+    DVec3::new(
+        alpha * (sin * phi.cos() + v.x),
+        alpha * (sin * phi.sin() + v.y),
+        h_z.max(f64::MIN_POSITIVE),
+    )
+    .normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_smooth_interface_has_one_direction() {
+        for n in [1.0, 1.33, 1.5, 2.5] {
+            let table = PathTable::at_roughness(0.0, n);
+            // Between nodes a path is a chord.
+            for (mu, off) in [(1.0, 1e-9), (0.5, 3e-3), (0.0, 1e-9)] {
+                let path = table.at(mu, 0.7);
+                for tau in [1e-3, 0.3, 4.0, 20.0] {
+                    let found = -crossed(path, DVec3::splat(tau)).x.ln() / tau;
+                    let exact = 1.0 / inner_cosine(mu, n).max(1e-3);
+                    assert!((found / exact - 1.0).abs() < off, "{n} {mu} {tau}: {found}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nodes_are_near_enough_to_each_other() {
+        // Of the light that falls on a film.
+        const NODES: f64 = 8e-3;
+        let table = PathTable::new(1.5);
+        let mut worst = 0.0_f64;
+        for alpha in [0.1, 0.23, 0.5, 0.9] {
+            for mu in [0.003, 0.05, 0.2, 0.55, 0.95] {
+                let cosines = inner_cosines(mu, alpha, 1.5);
+                for tau in [0.05, 0.3, 1.0, 2.0, 4.0, 10.0] {
+                    let exact = mean(cosines.iter().map(|mu| (-tau / mu).exp()));
+                    let found = crossed(table.at(mu, alpha), DVec3::splat(tau)).x;
+                    worst = worst.max((found - exact).abs());
+                    assert!(
+                        (found - exact).abs() < NODES,
+                        "{alpha} {mu} {tau}: {found} {exact}"
+                    );
+                }
+            }
+        }
+        println!("worst {worst}");
+        // One direction for all light is further off than that.
+        let smooth = (-1.0 / inner_cosine(0.5, 1.5)).exp();
+        let rough = crossed(table.at(0.5, 0.5), DVec3::ONE).x;
+        assert!((smooth - rough).abs() > 3.0 * NODES, "{smooth} {rough}");
+    }
+
+    #[test]
+    fn as_much_enters_as_the_interface_lets_in() {
+        use crate::optics::table::InterfaceTable;
+        // The table counts several bounces by their mean only.
+        const ENTERED: f64 = 0.012;
+        let table = InterfaceTable::new(1.5, 1.0);
+        for alpha in [0.1, 0.4, 1.0] {
+            for mu in [0.1, 0.5, 1.0] {
+                let found = inner_cosines(mu, alpha, 1.5).len() as f64 / f64::from(WALKS);
+                let t = table.at(mu, alpha).t;
+                assert!((found - t).abs() < ENTERED, "{alpha} {mu}: {found} {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_mean_cosine_is_that_of_the_walk() {
+        for alpha in [0.0, 0.1, 0.4, 1.0] {
+            let table = PathTable::at_roughness(alpha, 1.5);
+            for i in [3, 6, 11] {
+                let mu = node_mu(i);
+                let exact = mean(inner_cosines(mu, alpha, 1.5).into_iter());
+                let found = mean_inner_cosine(table.at(mu, alpha));
+                assert!(
+                    (found / exact - 1.0).abs() < 0.02,
+                    "{alpha} {mu}: {found} {exact}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn paths_stay_finite_at_the_extremes() {
+        for n in [1.0, 1.00005, 1.3, 3.0] {
+            let table = PathTable::new(n);
+            for mu in [-1.0, 0.0, 1e-9, 0.5, 1.0, 2.0] {
+                for alpha in [-1.0, 0.0, 0.3, 1.0, 9.0] {
+                    let path = table.at(mu, alpha);
+                    for tau in [0.0, 1e-12, 1.0, 20.0, 1e6] {
+                        let share = crossed(path, DVec3::splat(tau)).x;
+                        assert!(
+                            (0.0..=1.0).contains(&share),
+                            "{n} {mu} {alpha} {tau}: {share}"
+                        );
+                    }
+                    let cosine = mean_inner_cosine(path);
+                    assert!((0.0..=1.0).contains(&cosine), "{n} {mu} {alpha}: {cosine}");
+                }
+            }
+        }
+    }
+}
