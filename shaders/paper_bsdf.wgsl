@@ -273,6 +273,14 @@ fn mean_inner_cosine(path: vec4<f32>) -> f32 {
     return 1.0 / max(path.x + 0.5 * (path.y + 0.5 * (path.z + 0.5 * path.w)), 1.0);
 }
 
+fn steeper_by(path: vec4<f32>, tau: vec3<f32>) -> vec3<f32> {
+    let w = tau / (1.0 + tau);
+    let p = path.x + w * (path.y + w * (path.z + w * path.w));
+    let slope = path.y + w * (2.0 * path.z + w * (3.0 * path.w));
+    let left = max(p + w * (1.0 - w) * slope, vec3(1.0));
+    return max(1.0 / left - 1.0 / max(path.x, 1.0), vec3(0.0));
+}
+
 // Twins of src/optics/ink.rs
 
 const DEPTH_MAX: f32 = 20.0;
@@ -363,15 +371,16 @@ struct Shares {
 
 const DIFFUSE_COSINE: f32 = 0.66666666666667;
 
-fn crossing(through: Through, seen: Seen, m_f: f32, m_b: f32, eta: f32) -> vec3<f32> {
+fn crossing(through: Through, seen: Seen, m_f: f32, m_b: vec3<f32>, eta: f32) -> vec3<f32> {
     let t = min(through.transmitted * seen.clear, through.reflected + through.transmitted);
     let r = through.reflected + through.transmitted - t;
     let rho_f = seen.rho_f;
     let rho_b = seen.rho_b;
     let passed = through.transmitted_leaning * seen.clear;
     let returned = through.reflected_leaning * t * seen.clear;
-    let before = (passed * (1.0 - r * rho_f) - returned * rho_f) * (m_f - DIFFUSE_COSINE);
-    let behind = (passed * (1.0 - r * rho_b) - returned * rho_b) * (m_b - DIFFUSE_COSINE);
+    let even = 0.5 * (through.inner_mean + DIFFUSE_COSINE);
+    let before = (passed * (1.0 - r * rho_f) - returned * rho_f) * (m_f - even);
+    let behind = (passed * (1.0 - r * rho_b) - returned * rho_b) * (m_b - even);
     let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
     let crossed = max(t + before + behind, vec3(0.0));
     return crossed / (eta * eta * max(passes, vec3(1e-6)));
@@ -495,7 +504,7 @@ fn through_study(
 ) -> vec3<f32> {
     let straight = at_o.t * crossed(path_o, through.ballistic);
     let m_o = mean_inner_cosine(path_o);
-    let m_i = through.inner_mean;
+    let m_i = through.inner_mean + steeper_by(film.diffuse_path, seen.depth_b);
     let whole = crossing(through, seen, m_o, m_i, eta) * mean.t_mean;
     let scattered = max(whole - straight, vec3(0.0)) * crossed(film.diffuse_path, seen.depth_b);
     let front = at_o.t * crossed(path_o, seen.depth_f);
@@ -515,7 +524,7 @@ fn btdf_study(
     let inks = crossed(path_o, seen.depth_f) * crossed(path_i, seen.depth_b);
     let m_o = mean_inner_cosine(path_o);
     let m_i = mean_inner_cosine(path_i);
-    let whole = crossing(through, seen, m_o, m_i, eta);
+    let whole = crossing(through, seen, m_o, vec3(m_i), eta);
     let straight_i = at_i.t * crossed(path_i, through.ballistic);
     let straight_o = at_o.t * crossed(path_o, through.ballistic);
     let straight = straight_i * straight_o / max(through.straight_mean * mean.t_mean, vec3(1e-30));

@@ -112,7 +112,7 @@ struct Paper {
     // What the side is made of: the study tier, and light through the sheet.
     film: Film,
     // 12 nodes over √μ for each of 8 over √α.
-    paths: array<vec4<f32>, 96>,
+    paths: array<array<vec4<f32>, 12>, 8>,
     split: Split,
     through: Through,
     // Diffuse part of the bare paper's albedo on the side that is seen, and on the other.
@@ -298,9 +298,9 @@ fn path_at(mu: f32, s: f32) -> vec4<f32> {
     let x = path_mu(mu);
     let i = min(u32(x), 10u);
     let j = min(u32(s), 6u);
-    let k = j * 12u + i;
     return path_between(
-        paper.paths[k], paper.paths[k + 1u], paper.paths[k + 12u], paper.paths[k + 13u],
+        paper.paths[j][i], paper.paths[j][i + 1u],
+        paper.paths[j + 1u][i], paper.paths[j + 1u][i + 1u],
         x - f32(i), s - f32(j),
     );
 }

@@ -359,40 +359,63 @@ fn tiers_are_as_near_as_the_design_says() {
     }
 }
 
-/// OPTICS: ink albedo within 3% from τ = 0 to 4. Kept under a smooth surface.
+/// OPTICS: ink albedo within 3% from τ = 0 to 4, at 0° and 60°.
 const INK: f64 = 0.03;
-/// Under a rough surface (α = .4) light probably crosses ink at other slants than under a smooth
-/// one, and the study tier does not know it: the diffuse light of dark ink is too bright at a
-/// slant. OPTICS asks for [`INK`]; measured at τ = .05, .3, 1, 2: 1.2, 2.9, 5.3, 19.2% at 0° and
-/// 2.3, 11.3, 28.0, 62.9% at 60°. Deeper ink is below a thousandth of the sheet's light there.
-const ROUGH_INK: [(f64, [f64; 2]); 5] = [
-    (0.0, [INK, INK]),
-    (0.05, [INK, INK]),
-    (0.3, [INK, 0.12]),
-    (1.0, [0.06, 0.29]),
-    (2.0, [0.20, 0.64]),
-];
-fn ink_off(judge: &Judge, alpha: f64, tau: f64, angle: f64) -> f64 {
-    let photograph = |tau: f64| judge.get(&format!("photograph opaque {alpha} {tau}")).mean;
-    let side = Side::new(&OPAQUE, alpha, photograph(0.0));
+/// At 85° under a rough surface; measured: 4.6% at τ = 2 and 7.1% at τ = 4, where ink gives back
+/// 1e-5 of the light.
+const INK_GRAZING: f64 = 0.075;
+/// Under a rough surface where the depth is solved from the photograph; measured: 3.2% and 4.2% at
+/// τ = .3 and 1 and 60°. What a photograph shows is right by construction, so that the error
+/// between 0° and 60° (1.3% below to 1.2% above) is all on one side.
+const INK_PHOTOGRAPHED: f64 = 0.045;
+/// Of a perfect diffuser's light: dark ink under a rough surface photographs as its gloss, whose
+/// share is known within 3e-4.
+const INK_GLOSS: f64 = 3e-4;
+
+/// What a spot gives back when it photographs as `albedo`, and what the judge finds for ink `tau`.
+fn ink(judge: &Judge, side: &Side, alpha: f64, albedo: f64, tau: f64, angle: f64) -> [f64; 2] {
     let truth = judge.get(&format!("reflected {alpha} {angle} {tau}"));
-    let l = towards(angle);
-    let found = PI * side.average(photograph(tau), l, [0.0, 1.0], [0.0, TAU], 32)[1];
+    let found = PI * side.average(albedo, towards(angle), [0.0, 1.0], [0.0, TAU], 32)[1];
     println!("ink {alpha} {tau} {angle}: {:.4}", found / truth.mean);
-    (found / truth.mean - 1.0).abs()
+    [found, truth.mean]
 }
 
 #[test]
 fn ink_is_as_dark_as_the_judge_finds_it() {
     let judge = Judge::read();
-    for (k, angle) in [0.0, 60.0].into_iter().enumerate() {
-        for tau in INKS {
-            let off = ink_off(&judge, 0.0, tau, angle);
-            assert!(off < INK, "smooth {tau} {angle}: {off}");
+    for alpha in ALPHAS {
+        let photograph = |tau: f64| judge.get(&format!("photograph opaque {alpha} {tau}")).mean;
+        let side = Side::new(&OPAQUE, alpha, photograph(0.0));
+        for angle in ANGLES {
+            for tau in INKS {
+                // Of this depth.
+                let albedo = match tau {
+                    0.0 => photograph(0.0),
+                    tau => side.photograph_of(tau),
+                };
+                let [found, truth] = ink(&judge, &side, alpha, albedo, tau, angle);
+                let bound = match (alpha > 0.0, angle > 60.0) {
+                    (true, true) => INK_GRAZING,
+                    _ => INK,
+                };
+                let off = (found / truth - 1.0).abs();
+                assert!(off < bound, "depth {alpha} {tau} {angle}: {off}");
+            }
         }
-        for (tau, bounds) in ROUGH_INK {
-            let off = ink_off(&judge, 0.4, tau, angle);
-            assert!(off < bounds[k], "rough {tau} {angle}: {off}");
+        for angle in [0.0, 60.0] {
+            for tau in INKS {
+                // As the judge photographs it.
+                let [found, truth] = ink(&judge, &side, alpha, photograph(tau), tau, angle);
+                let bound = match alpha > 0.0 {
+                    true => (INK_PHOTOGRAPHED * truth).max(INK_GLOSS),
+                    false => INK * truth,
+                };
+                let off = (found - truth).abs();
+                assert!(
+                    off < bound,
+                    "photograph {alpha} {tau} {angle}: {off} of {truth}"
+                );
+            }
         }
     }
 }
@@ -400,23 +423,16 @@ fn ink_is_as_dark_as_the_judge_finds_it() {
 #[test]
 fn light_through_the_sheet_is_what_the_judge_finds() {
     let judge = Judge::read();
-    // OPTICS asks for 8% (opaque) and 15% (thin), here at normal incidence and at 60° for ink
-    // on neither, the front and both sides. Missed: opaque with ink (−8.7 and −11.1% at 0°), and
-    // at 60°, probably as light that enters at a slant scatters nearer to the surface and less of
-    // it crosses: opaque +14.8, +19.2, +15.0%, thin +10.4, +19.5, +28.7%.
-    let bounds = [
-        (OPAQUE, [[0.08, 0.09, 0.115], [0.155, 0.20, 0.155]]),
-        (THIN, [[0.15, 0.15, 0.15], [0.15, 0.20, 0.295]]),
-    ];
-    for (sheet, bounds) in bounds {
+    // OPTICS: 8% (opaque) and 15% (thin), here at normal incidence and at 60°, for ink on neither
+    // side, the front and both.
+    for (sheet, bound) in [(OPAQUE, 0.08), (THIN, 0.15)] {
         let photograph = |tau: f64| {
             let name = format!("photograph {} 0.4 {tau}", sheet.name);
             judge.get(&name).mean
         };
         let side = Side::new(&sheet, 0.4, photograph(0.0));
-        for (angle, bounds) in [0.0f64, 60.0].into_iter().zip(bounds) {
-            let inks = [(0.0, 0.0), (HELD, 0.0), (HELD, HELD)];
-            for ((f, b), bound) in inks.into_iter().zip(bounds) {
+        for angle in [0.0f64, 60.0] {
+            for (f, b) in [(0.0, 0.0), (HELD, 0.0), (HELD, HELD)] {
                 let name = format!("transmitted {} {angle} {f} {b}", sheet.name);
                 let truth = judge.get(&name);
                 // By reciprocity an eye sees the share of an even table's light that a beam
@@ -432,14 +448,9 @@ fn light_through_the_sheet_is_what_the_judge_finds() {
 
 /// OPTICS, "energy": lossless within 5e-3 (gallery and above).
 const LOSSLESS: f64 = 5e-3;
-/// OPTICS asks for [`LOSSLESS`] of the study tier too. Measured: +.80% on an opaque sheet at
-/// grazing light, and +4.85% on a
-/// thin one, probably as its slab already counts the light that goes straight through.
-const STUDY_LOSSLESS: [f64; 2] = [8.5e-3, 0.049];
-
 #[test]
 fn no_tier_gives_more_light_than_it_gets() {
-    for (sheet, bound) in [OPAQUE, THIN].into_iter().zip(STUDY_LOSSLESS) {
+    for sheet in [OPAQUE, THIN] {
         for alpha in [0.1, 0.2, 0.4, 0.6, 0.8, 1.0] {
             let table = InterfaceTable::at_roughness(alpha, N, 1.0);
             let mean = table.mean_at(alpha);
@@ -467,7 +478,7 @@ fn no_tier_gives_more_light_than_it_gets() {
                 let sum = all(albedo)[1] + through;
                 println!("furnace {} {alpha} {mu}: {whole:.4} {sum:.4}", sheet.name);
                 assert!((whole - 1.0).abs() < LOSSLESS, "{alpha} {mu}: {whole}");
-                assert!((sum - 1.0).abs() < bound, "{alpha} {mu}: {sum}");
+                assert!((sum - 1.0).abs() < LOSSLESS, "{alpha} {mu}: {sum}");
             }
         }
     }
@@ -484,8 +495,8 @@ const FLOORS: [(f64, f64); 8] = [
     (0.8, 0.01908),
     (1.0, 0.01413),
 ];
-/// In albedo: the compensation's even spread is .0015 short at α = 1, where it errs most.
-const FLOOR: f64 = 1.6e-3;
+/// In albedo: late light is taken for evenly spread, which leaves 3e-4 of it out at α = .4.
+const FLOOR: f64 = 4e-4;
 
 #[test]
 fn the_surface_s_share_of_a_photograph_is_the_judge_s() {

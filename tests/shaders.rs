@@ -257,13 +257,10 @@ fn constants_of_the_shaders_are_those_of_the_sources() {
     assert_eq!(constant(PAPER_BSDF, "PATH_MU"), PATH_MU as f64);
     assert_eq!(constant(PAPER_BSDF, "PATH_ALPHA"), PATH_ALPHA as f64);
     // The glue's own numbers for the same nodes.
-    assert!(PAPER_MATERIAL.contains(&format!(
-        "paths: array<vec4<f32>, {}>",
-        PATH_MU * PATH_ALPHA
-    )));
+    let nodes = format!("paths: array<array<vec4<f32>, {PATH_MU}>, {PATH_ALPHA}>");
+    assert!(PAPER_MATERIAL.contains(&nodes));
     assert!(PAPER_MATERIAL.contains(&format!("min(u32(x), {}u)", PATH_MU - 2)));
     assert!(PAPER_MATERIAL.contains(&format!("min(u32(s), {}u)", PATH_ALPHA - 2)));
-    assert!(PAPER_MATERIAL.contains(&format!("let k = j * {PATH_MU}u + i;")));
     assert_eq!(constant(PAPER_BASELINES, "BASE_MIN"), BASE_MIN);
 }
 
@@ -428,7 +425,9 @@ impl Sentinel {
             overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),
             quadrature: std::array::from_fn::<_, { GAUSS_LEGENDRE.len() }, _>(|_| self.vec4()),
             film: self.film().0,
-            paths: std::array::from_fn::<_, { PATH_MU * PATH_ALPHA }, _>(|_| self.vec4()),
+            paths: std::array::from_fn::<_, PATH_ALPHA, _>(|_| {
+                std::array::from_fn::<_, PATH_MU, _>(|_| self.vec4())
+            }),
             split: self.split().0,
             through: self.through().0,
             lit_bare: self.vec3(),
@@ -618,7 +617,7 @@ fn the_glue_is_valid_for_every_four_terms() {
     let names: Vec<&str> = DEFINITIONS
         .iter()
         .copied()
-        .filter(|name| !BASELINES[1..].contains(name) && *name != "COUPLED")
+        .filter(|name| !BASELINES[1..].contains(name) && !["COUPLED", "PATHS"].contains(name))
         .collect();
     let bits = names.len() as u32;
     let defined = |set: u32| -> Vec<&str> {
@@ -638,6 +637,12 @@ fn the_glue_is_valid_for_every_four_terms() {
                     let mut defined = defined(set);
                     if COUPLED.iter().any(|tier| defined.contains(tier)) {
                         defined.push("COUPLED");
+                        if ["TIER_STUDY", "TRANSMISSION"]
+                            .iter()
+                            .any(|term| defined.contains(term))
+                        {
+                            defined.push("PATHS");
+                        }
                     }
                     if let Some(tier) = defined.iter_mut().find(|name| **name == BASELINES[0]) {
                         *tier = BASELINES[turn % BASELINES.len()];

@@ -145,6 +145,16 @@ pub fn mean_inner_cosine(path: DVec4) -> f64 {
     1.0 / (path.x + 0.5 * (path.y + 0.5 * (path.z + 0.5 * path.w))).max(1.0)
 }
 
+/// By how much the mean cosine of what is left after a film of depth `tau` is higher than that of
+/// what entered: e^(−τP) falls by the mean of 1/μ′ over what is left, d(τP)/dτ.
+pub fn steeper_by(path: DVec4, tau: DVec3) -> DVec3 {
+    let w = tau / (1.0 + tau);
+    let p = path.x + w * (path.y + w * (path.z + w * path.w));
+    let slope = path.y + w * (2.0 * path.z + w * (3.0 * path.w));
+    let left = (p + w * (1.0 - w) * slope).max(DVec3::ONE);
+    (1.0 / left - 1.0 / path.x.max(1.0)).max(DVec3::ZERO)
+}
+
 /// P at one direction and roughness, through four depths.
 fn effective_path(mu: f64, alpha: f64, n: f64) -> DVec4 {
     let cosines = inner_cosines(mu, alpha, n);
@@ -345,7 +355,7 @@ mod tests {
 
     #[test]
     fn a_smooth_interface_has_one_direction() {
-        for n in [1.0, 1.33, 1.5, 2.5] {
+        for n in [1.2, 1.33, 1.5, 2.5] {
             let table = PathTable::at_roughness(0.0, n);
             // Between nodes a path is a chord.
             for (mu, off) in [(1.0, 1e-9), (0.5, 3e-3), (0.0, 1e-9)] {

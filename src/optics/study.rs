@@ -13,7 +13,7 @@ use super::{
     ink::{Film, beyond_capture, inner_cosine},
     microfacet::{d_ggx, v_smith},
     quadrature::{chebyshev, gauss_legendre, through},
-    refraction::{PathTable, crossed, mean_inner_cosine},
+    refraction::{PathTable, crossed, mean_inner_cosine, steeper_by},
     slab::{Phase, Slab},
     table::{Interface, InterfaceMean, InterfaceTable},
     tier::{Facing, Surface, albedo_of, brdf_gallery_specular, capture_floor},
@@ -179,15 +179,18 @@ const DIFFUSE_COSINE: f64 = 2.0 / 3.0;
 /// T0/[(1 − R0ρ_f)(1 − R0ρ_b) − T0²ρ_fρ_b]
 ///
 /// the first and the last pass are not those of diffuse light, as what enters steeply goes deeper.
-pub fn crossing(through: &Through, seen: &Seen, m_f: f64, m_b: f64, eta: f64) -> DVec3 {
+/// What leaves is the same whatever its direction, so only half of what the mean of entering light
+/// has over diffuse light counts at either side.
+pub fn crossing(through: &Through, seen: &Seen, m_f: f64, m_b: DVec3, eta: f64) -> DVec3 {
     // What crosses more is reflected less.
     let t = (through.transmitted * seen.clear).min(through.reflected + through.transmitted);
     let r = through.reflected + through.transmitted - t;
     let (rho_f, rho_b) = (seen.rho_f, seen.rho_b);
     let passed = through.transmitted_leaning * seen.clear;
     let returned = through.reflected_leaning * t * seen.clear;
-    let before = (passed * (1.0 - r * rho_f) - returned * rho_f) * (m_f - DIFFUSE_COSINE);
-    let behind = (passed * (1.0 - r * rho_b) - returned * rho_b) * (m_b - DIFFUSE_COSINE);
+    let even = 0.5 * (through.inner_mean + DIFFUSE_COSINE);
+    let before = (passed * (1.0 - r * rho_f) - returned * rho_f) * (m_f - even);
+    let behind = (passed * (1.0 - r * rho_b) - returned * rho_b) * (m_b - even);
     let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
     let crossed = (t + before + behind).max(DVec3::ZERO);
     crossed / (eta * eta * passes.max(DVec3::splat(1e-6)))
@@ -350,8 +353,8 @@ impl Through {
             rho_f: DVec3::splat(r_i),
             rho_b: DVec3::splat(r_i),
         };
-        through.flat_share =
-            crossing(&through, &bare, inner_mean, inner_mean, eta) * (mean.t_mean * mean.t_mean);
+        through.flat_share = crossing(&through, &bare, inner_mean, DVec3::splat(inner_mean), eta)
+            * (mean.t_mean * mean.t_mean);
         through
     }
 }
@@ -479,7 +482,9 @@ pub fn through_study(
     eta: f64,
 ) -> DVec3 {
     let straight = at_o.t * crossed(path_o, through.ballistic);
-    let (m_o, m_i) = (mean_inner_cosine(path_o), through.inner_mean);
+    let m_o = mean_inner_cosine(path_o);
+    // Ink leaves more of the steeper light.
+    let m_i = through.inner_mean + steeper_by(film.diffuse_path, seen.depth_b);
     let whole = crossing(through, seen, m_o, m_i, eta) * mean.t_mean;
     // Diffusion counts what goes straight through too.
     let scattered = (whole - straight).max(DVec3::ZERO) * crossed(film.diffuse_path, seen.depth_b);
@@ -505,7 +510,7 @@ pub fn btdf_study(
 ) -> DVec3 {
     let inks = crossed(path_o, seen.depth_f) * crossed(path_i, seen.depth_b);
     let (m_o, m_i) = (mean_inner_cosine(path_o), mean_inner_cosine(path_i));
-    let whole = crossing(through, seen, m_o, m_i, eta);
+    let whole = crossing(through, seen, m_o, DVec3::splat(m_i), eta);
     // What goes straight through is in one direction only.
     let straight_i = at_i.t * crossed(path_i, through.ballistic);
     let straight_o = at_o.t * crossed(path_o, through.ballistic);

@@ -240,7 +240,8 @@ mod tests {
                 })
                 .sum();
             let whole = mean.compensation * over_hemisphere;
-            assert!((whole - 1.0).abs() < 0.01, "{alpha}: {whole}");
+            // Near a mirror the polynomial dips below none, which is cut off.
+            assert!((whole - 1.0).abs() < 0.03, "{alpha}: {whole}");
         }
     }
 

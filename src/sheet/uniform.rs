@@ -328,7 +328,7 @@ pub struct PaperUniform {
     pub overlays: [MapPlace; MAX_OVERLAYS],
     pub quadrature: [Vec4; GAUSS_LEGENDRE.len()],
     pub film: FilmUniform,
-    pub paths: [Vec4; PATH_MU * PATH_ALPHA],
+    pub paths: [[Vec4; PATH_MU]; PATH_ALPHA],
     pub split: SplitUniform,
     pub through: ThroughUniform,
     pub lit_bare: Vec3,
@@ -362,7 +362,8 @@ impl PaperUniform {
     /// Sets what the side is made of.
     pub fn set_study(&mut self, study: &Study) {
         self.film = FilmUniform::new(&study.film);
-        for (slot, path) in self.paths.iter_mut().zip(&study.film.paths.nodes) {
+        let slots = self.paths.iter_mut().flatten();
+        for (slot, path) in slots.zip(&study.film.paths.nodes) {
             *slot = path.as_vec4();
         }
         self.split = SplitUniform::new(&study.split);
