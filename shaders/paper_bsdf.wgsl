@@ -356,19 +356,6 @@ struct Through {
     flat_share: vec3<f32>,
 }
 
-struct Particle {
-    n: vec3<f32>,
-    alpha: f32,
-    k: vec3<f32>,
-    covered: f32,
-}
-
-struct Shares {
-    paper: vec3<f32>,
-    gloss: f32,
-    particles: vec3<f32>,
-}
-
 const DIFFUSE_COSINE: f32 = 0.66666666666667;
 
 fn crossing(through: Through, seen: Seen, m_f: f32, m_b: vec3<f32>, eta: f32) -> vec3<f32> {
@@ -428,7 +415,6 @@ struct Ways {
     path_o: vec4<f32>,
 }
 
-// `shares` are particle_shares of the spot: the same for every lamp.
 fn brdf_study(
     s: Surface,
     g: Facing,
@@ -438,8 +424,23 @@ fn brdf_study(
     split: Split,
     depth: vec3<f32>,
     ways: Ways,
-    particle: Particle,
-    shares: Shares,
+    paper: vec3<f32>,
+    surface: f32,
+) -> vec3<f32> {
+    let gloss = brdf_gallery_specular(s, g, at_i, at_o, mean) * surface;
+    return brdf_study_diffuse(s, g, at_i, at_o, mean, split, depth, ways, paper) + vec3(gloss);
+}
+
+fn brdf_study_diffuse(
+    s: Surface,
+    g: Facing,
+    at_i: Interface,
+    at_o: Interface,
+    mean: InterfaceMean,
+    split: Split,
+    depth: vec3<f32>,
+    ways: Ways,
+    paper: vec3<f32>,
 ) -> vec3<f32> {
     let inner_i = inner_cosine(g.mu_i, s.eta);
     let inner_o = inner_cosine(g.mu_o, s.eta);
@@ -449,40 +450,7 @@ fn brdf_study(
     let shape = split_shape(split, q, g.mu_i, g.mu_o, m_i, m_o);
     let through_ink = beyond_capture(depth, ways.capture, ways.path_i, ways.path_o);
     let coupled = at_i.t * at_o.t * mean.capture;
-    let paper = shares.paper * coupled * through_ink * shape;
-    let gloss = brdf_gallery_specular(s, g, at_i, at_o, mean) * (1.0 - particle.covered);
-    return (paper + shares.particles) * INV_PI + vec3(gloss);
-}
-
-// The light that a spot's particles mirror.
-fn brdf_particles(shares: Shares, particle: Particle, g: Facing) -> vec3<f32> {
-    return shares.gloss * particle_lobe(particle, g);
-}
-
-fn particle_lobe(particle: Particle, g: Facing) -> vec3<f32> {
-    let facets = d_ggx(g.sin2_h, particle.alpha) * v_smith(g.mu_i, g.mu_o, particle.alpha);
-    return fresnel_conductor(g.cos_d, particle.n, particle.k) * facets;
-}
-
-fn particle_capture(particle: Particle) -> vec3<f32> {
-    let cos_d = sqrt(0.5 + 0.5 * FRAC_1_SQRT_2);
-    return PI * particle_lobe(particle, Facing(FRAC_1_SQRT_2, 1.0, cos_d, CAPTURE_SIN2_H));
-}
-
-fn particle_shares(
-    s: Surface,
-    mean: InterfaceMean,
-    bare: vec3<f32>,
-    particle: Particle,
-) -> Shares {
-    let uncovered = 1.0 - particle.covered;
-    let lit = max(s.albedo - capture_floor(s, mean) * uncovered, vec3(0.0));
-    let paper = min(lit, bare * uncovered);
-    let rest = lit - paper;
-    let mirrored = particle_capture(particle) * particle.covered;
-    let bound = rest / max(mirrored, vec3(1e-6));
-    let gloss = clamp(min(bound.x, min(bound.y, bound.z)), 0.0, 1.0);
-    return Shares(paper, gloss * particle.covered, max(rest - mirrored * gloss, vec3(0.0)));
+    return paper * coupled * through_ink * shape * INV_PI;
 }
 
 struct Seen {

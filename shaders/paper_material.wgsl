@@ -1,17 +1,23 @@
 // Bevy glue of the sheet's material: bindings, texture reads, entry points. The physics is in
-// paper_bsdf.wgsl. Everything happens in the local frame of one side, in mm: x right, y up,
+// paper_bsdf.wgsl and paper_media.wgsl. Everything happens in the local frame of one side, in mm: x right, y up,
 // z out of the side. The definitions (#ifdef) are set from `Terms` in src/sheet/material.rs.
 
 #import "embedded://recto/paper_bsdf.wgsl"::{
     ALPHA_MIN, INV_PI, MU_MIN,
-    Facing, Film, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Particle, Seen,
-    Shares, Split, Surface, Through, Ways,
-    albedo_of, beyond_capture, brdf_draft, brdf_gallery, brdf_lambert, capture_floor, brdf_study,
-    btdf_study, facing, fit_powers, interface_at, interface_mean_at,
-    ies_angles, interface_row, internal_reflectance, light_disc, light_distant, light_ies,
-    light_punctual, light_rectangle, mean_inner_cosine,
-    mean_length, optical_depth, particle_shares, path_alpha, path_between, path_mu, through_study,
-    widened,
+    Facing, Film, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Seen, Split, Surface,
+    Through, Ways,
+    albedo_of, beyond_capture, brdf_draft, brdf_gallery, brdf_lambert, brdf_study,
+    brdf_study_diffuse, btdf_study, capture_floor, facing, fit_powers, fresnel_dielectric,
+    ies_angles, interface_at, interface_mean_at, interface_row, internal_reflectance, light_disc,
+    light_distant, light_ies, light_punctual, light_rectangle, mean_inner_cosine, mean_length,
+    optical_depth, path_alpha, path_between, path_mu, through_study, widened,
+}
+#import "embedded://recto/paper_media.wgsl"::{
+    CAPTURE_COS_D, SHEEN_MEAN,
+    Cover, Particle,
+    albedo_under_sheen, alpha_towards, brdf_body, brdf_gloss, brdf_sheen, combed_capture, gloss_lobe,
+    gloss_lobe_anisotropic, interface_of, mean_of, particle_capture, particle_gloss, particle_lobe,
+    passing, shares_of, sheen_albedo, turned, uncovered_share, under_sheen,
 }
 
 #ifdef RELIEF_SHADOWS
@@ -59,13 +65,25 @@ struct MapPlace {
     lit: f32,
 }
 
-// A sort of particles: n + ik and the diffuse albedo per channel.
-struct ParticleSlot {
-    n: vec3<f32>,
-    alpha: f32,
-    k: vec3<f32>,
-    spare: f32,
-    albedo: vec3<f32>,
+// What lies on both sides, and the lobes of paper that are off by default.
+struct Media {
+    particles: array<Particle, 6>,
+    body_albedo: vec3<f32>,
+    particle_count: u32,
+    body_through: vec3<f32>,
+    film_eta: f32,
+    film_gain: vec3<f32>,
+    body_eta: f32,
+    other_body_albedo: vec3<f32>,
+    film_reflects: f32,
+    other_body_through: vec3<f32>,
+    body_reflects: f32,
+    other_grains: vec3<f32>,
+    sheen: f32,
+    // The way the gloss spreads more, a unit vector.
+    along: vec2<f32>,
+    stretch: f32,
+    retro: f32,
 }
 
 struct Paper {
@@ -94,7 +112,7 @@ struct Paper {
     roughness_place: MapPlace,
     // Of both textures of media.
     matter_place: MapPlace,
-    particles: array<ParticleSlot, 6>,
+    media: Media,
     outline_place: MapPlace,
     // Linear level at which a window shows a perfect diffuser (x); the rest is unused.
     level: vec4<f32>,
@@ -122,6 +140,7 @@ struct Paper {
     // One over the mean of the transmission map.
     clear_scale: f32,
     other_place: MapPlace,
+    other_matter_place: MapPlace,
     transmission_place: MapPlace,
     height_place: MapPlace,
     // Heights of black, and how much higher white is, in mm.
@@ -151,6 +170,10 @@ struct Paper {
 #ifdef MATTER_MORE
 // Shares of particles of slots 2 to 5.
 @group(#{MATERIAL_BIND_GROUP}) @binding(8) var matter_more_map: texture_2d<f32>;
+#endif
+#ifdef OTHER_MATTER
+// Shares of film, body colour, and particles of all sorts on the other side.
+@group(#{MATERIAL_BIND_GROUP}) @binding(12) var other_matter_map: texture_2d<f32>;
 #endif
 #ifdef OVERLAYS
 @group(#{MATERIAL_BIND_GROUP}) @binding(16) var overlay_map_a: texture_2d<f32>;
@@ -383,6 +406,24 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     ).x;
     clear = clearness * paper.clear_scale;
 #endif
+#ifdef OTHER_MATTER
+    let other_matter = textureSample(
+        other_matter_map, map_sampler, place_uv(paper.other_matter_place, in.side),
+    );
+#endif
+#endif
+#ifdef MATTER
+    let matter = textureSample(matter_map, map_sampler, map_uv(paper.matter_place, in));
+#ifdef PARTICLES
+    var coverages = array<f32, 6>(matter.z, matter.w, 0.0, 0.0, 0.0, 0.0);
+#ifdef MATTER_MORE
+    let more = textureSample(matter_more_map, map_sampler, map_uv(paper.matter_place, in));
+    coverages[2] = more.x;
+    coverages[3] = more.y;
+    coverages[4] = more.z;
+    coverages[5] = more.w;
+#endif
+#endif
 #endif
     var coverage = 1.0;
 #ifdef OUTLINE
@@ -462,7 +503,40 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #else
     let v = normalize(paper.eye.xyz - in.local);
 #endif
-    let s = Surface(albedo, alpha, paper.eta, paper.f_normal, paper.specular, paper.f_capture);
+#ifdef MATTER
+    var cover = Cover(0.0, matter.y, 0.0, vec3(0.0));
+#ifdef PARTICLES
+    for (var k = 0u; k < paper.media.particle_count; k++) {
+        cover.particles += coverages[k];
+        cover.grains += coverages[k] * paper.media.particles[k].albedo;
+    }
+#endif
+    let open = max(1.0 - cover.particles - cover.body, 0.0);
+    cover.film = clamp(matter.x / max(open, 1e-4), 0.0, 1.0);
+#endif
+    var eta = paper.eta;
+    var f_capture = paper.f_capture;
+#ifdef MEDIA_INDEX
+    // Of what has a dielectric surface; without any, nothing asks for its index.
+    let dielectric = max(1.0 - cover.particles, 1e-4);
+    let of_film = min(matter.x / dielectric, 1.0);
+    let of_body = min(matter.y / dielectric, 1.0);
+    eta += of_film * (paper.media.film_eta - paper.eta) + of_body * (paper.media.body_eta - paper.eta);
+    let reflects = 1.0 + of_film * (paper.media.film_reflects - 1.0)
+        + of_body * (paper.media.body_reflects - 1.0);
+    f_capture = fresnel_dielectric(CAPTURE_COS_D, eta);
+#endif
+#ifdef SHEEN
+    var sheen = paper.media.sheen;
+#ifdef MATTER
+    sheen *= open * (1.0 - cover.film);
+#endif
+    albedo = albedo_under_sheen(sheen, albedo);
+#endif
+#ifdef ANISOTROPIC
+    f_capture *= combed_capture(alpha, paper.media.stretch);
+#endif
+    let s = Surface(albedo, alpha, eta, paper.f_normal, paper.specular, f_capture);
 #ifdef COUPLED
     var powers = vec4(1.0, 0.0, 0.0, 0.0);
 #ifdef ROUGHNESS_MAP
@@ -471,10 +545,41 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef NORMAL_MAP
     powers = fit_powers(alpha);
 #endif
+#ifdef ANISOTROPIC
+    powers = fit_powers(alpha_towards(alpha, paper.media.stretch, vec3(0.0, 0.0, 1.0)));
+    var grain_way = vec3(paper.media.along, 0.0);
+#ifdef CURVED
+    grain_way = tangent * paper.media.along.x + cross(geometric, tangent) * paper.media.along.y;
+#endif
+    // Rows of the frame in which the facets' longer axis is x.
+    let along = normalize(grain_way - n * dot(n, grain_way));
+    let frame = transpose(mat3x3(along, cross(n, along), n));
+    let framed_v = frame * v;
+#endif
     let row = interface_row(paper.interface_table, powers);
-    let mean = interface_mean_at(paper.interface_table, powers);
-    let at_o = interface_at(row, max(dot(n, v), MU_MIN));
+    var mean = interface_mean_at(paper.interface_table, powers);
+    var at_o = interface_at(row, max(dot(n, v), MU_MIN));
+#ifdef ANISOTROPIC
+    let powers_o = fit_powers(alpha_towards(alpha, paper.media.stretch, framed_v));
+    at_o = interface_at(interface_row(paper.interface_table, powers_o), max(dot(n, v), MU_MIN));
+#endif
+#ifdef MEDIA_INDEX
+    mean = mean_of(mean, reflects);
+    at_o = interface_of(at_o, reflects);
+#endif
+#ifdef MATTER
+    let shares = shares_of(s, mean, paper.lit_bare, paper.media.body_albedo, cover);
+    let paper_albedo = shares.paper;
+    let surface = shares.surface;
+    var share_f = uncovered_share(shares, paper.lit_bare);
+#ifdef MEDIA_INDEX
+    share_f *= 1.0 + cover.film * (paper.media.film_gain - 1.0);
+#endif
+#else
     let paper_albedo = albedo_of(s, mean);
+    let surface = 1.0;
+    let share_f = paper_albedo / paper.lit_bare;
+#endif
 #endif
 #ifdef PATHS
     let path_s = path_alpha(alpha);
@@ -482,23 +587,76 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let path_o = path_at(dot(n, v), path_s);
 #endif
 #ifdef TIER_STUDY
-    let depth = optical_depth(paper.film, capture, paper_albedo / paper.lit_bare);
-    let particle = Particle(vec3(1.0), 1.0, vec3(0.0), 0.0);
-    let shares = Shares(paper_albedo, 0.0, vec3(0.0));
+    let darkness = optical_depth(paper.film, capture, share_f);
+#ifdef MATTER
+    // Elsewhere the paper itself is dark.
+    let depth = darkness * cover.film;
+#else
+    let depth = darkness;
+#endif
+#endif
+#ifdef PARTICLES
+    // How much of each sort mirrors, and what all of them scatter.
+    var gloss = array<f32, 6>();
+    var grain_alphas = array<f32, 6>();
+    var grains = vec3(0.0);
+    for (var k = 0u; k < paper.media.particle_count; k++) {
+        let covered = coverages[k];
+        if covered > 0.0 {
+            let particle = paper.media.particles[k];
+            var grain_alpha = particle.alpha;
+#ifdef NORMAL_MAP
+            grain_alpha = widened(grain_alpha, shortening);
+#endif
+            let photographed = particle.albedo * shares.scale;
+            let mirrored = particle_capture(particle, grain_alpha);
+            let mirrors = particle_gloss(photographed, mirrored, shares.lit);
+            gloss[k] = mirrors * covered;
+            grain_alphas[k] = grain_alpha;
+            grains += max(photographed - mirrors * mirrored, vec3(0.0)) * covered;
+        }
+    }
+    var lit_grains = grains * INV_PI;
+#ifdef NORMAL_MAP
+    lit_grains *= shortening;
+#endif
 #endif
 #ifdef TRANSMISSION
     // Both inks by their photographs, over the bare paper's.
 #ifdef COUPLED
-    let share_f = paper_albedo / paper.lit_bare;
+#ifdef OTHER_MATTER
+    let other_particles = other_matter.z;
+    let other_open = max(1.0 - other_particles - other_matter.y, 0.0);
+    let other_cover = Cover(
+        clamp(other_matter.x / max(other_open, 1e-4), 0.0, 1.0), other_matter.y, other_particles,
+        paper.media.other_grains * other_particles,
+    );
+    let other = shares_of(
+        Surface(other_albedo, alpha, eta, paper.f_normal, paper.specular, f_capture), mean,
+        paper.other_bare, paper.media.other_body_albedo, other_cover,
+    );
+    let share_b = max(uncovered_share(other, paper.other_bare), vec3(0.0));
+#else
     let share_b = max(other_albedo - capture_floor(s, mean), vec3(0.0)) / paper.other_bare;
+#endif
 #else
     let share_f = albedo / paper.lit_bare;
     let share_b = other_albedo / paper.other_bare;
 #endif
 #ifdef TIER_STUDY
-    let baked = vec3(1.0);
+    // What covers either side lets less through.
+    var baked = vec3(1.0);
+#ifdef MATTER
+    baked *= passing(cover, paper.media.body_through);
+#endif
+#ifdef OTHER_MATTER
+    baked *= passing(other_cover, paper.media.other_body_through);
+#endif
+#ifdef SHEEN
+    baked *= 1.0 - sheen * sheen_albedo(max(dot(n, v), MU_MIN));
+#endif
     let seen = Seen(
-        depth,
+        darkness,
         clear,
         optical_depth(paper.film, capture, share_b),
         internal_reflectance(paper.film, share_f),
@@ -584,6 +742,14 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
 #ifdef COUPLED
                 var at_i = interface_at(row, mu_i);
+#ifdef ANISOTROPIC
+                let framed_l = frame * incidence.l;
+                let powers_i = fit_powers(alpha_towards(alpha, paper.media.stretch, framed_l));
+                at_i = interface_at(interface_row(paper.interface_table, powers_i), mu_i);
+#endif
+#ifdef MEDIA_INDEX
+                at_i = interface_of(at_i, reflects);
+#endif
 #ifdef NORMAL_MAP
                 // Before the albedo's bounds, as they belong to the paper and not to its relief.
                 at_i.t *= shortening;
@@ -593,10 +759,46 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
                 let f = brdf_gallery(s, facing(n, incidence.l, v), at_i, at_o, mean);
 #endif
 #ifdef TIER_STUDY
-                let f = brdf_study(
-                    s, facing(n, incidence.l, v), at_i, at_o, mean, paper.split, depth,
-                    Ways(capture, path_at(mu_i, path_s), path_o), particle, shares,
+                let g = facing(n, incidence.l, v);
+                let ways = Ways(capture, path_at(mu_i, path_s), path_o);
+#ifdef GLOSS
+                var f = brdf_study_diffuse(
+                    s, g, at_i, at_o, mean, paper.split, depth, ways, paper_albedo,
                 );
+#ifdef ANISOTROPIC
+                let straight = gloss_lobe_anisotropic(s, paper.media.stretch, framed_l, framed_v);
+#else
+                let straight = gloss_lobe(s, g);
+#endif
+                var back = straight;
+#ifdef RETRO
+#ifdef ANISOTROPIC
+                let framed_turned = vec3(-framed_v.xy, framed_v.z);
+                back = gloss_lobe_anisotropic(s, paper.media.stretch, framed_l, framed_turned);
+#else
+                back = gloss_lobe(s, facing(n, incidence.l, turned(n, v)));
+#endif
+#endif
+                f += surface * brdf_gloss(s, straight, back, paper.media.retro, at_i, at_o, mean);
+#else
+                var f = brdf_study(
+                    s, g, at_i, at_o, mean, paper.split, depth, ways, paper_albedo, surface,
+                );
+#endif
+#ifdef BODY
+                f += brdf_body(shares.body, at_i, at_o, mean);
+#endif
+#ifdef PARTICLES
+                f += lit_grains;
+                for (var k = 0u; k < paper.media.particle_count; k++) {
+                    if gloss[k] > 0.0 {
+                        f += gloss[k] * particle_lobe(paper.media.particles[k], grain_alphas[k], g);
+                    }
+                }
+#endif
+#ifdef SHEEN
+                f = f * under_sheen(sheen, g.mu_i, g.mu_o) + brdf_sheen(sheen, g.cos_d);
+#endif
 #endif
 #ifdef TIER_ISLE
                 let f = brdf_isle(lit, facing(n, incidence.l, v));
@@ -653,8 +855,25 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let leaning = paper.split.leaning * (paper.split.inner_mean - mean_inner_cosine(path_o));
     diffuse *= beyond_capture(depth, capture, paper.film.diffuse_path, path_o)
         * (max(1.0 + leaning, vec3(0.0)) * paper.split.at_capture);
+#ifdef BODY
+    diffuse += shares.body * (at_o.t * mean.t_mean * mean.capture);
 #endif
+#ifdef PARTICLES
+    // Metal and pigment reflect even light about as at 45°/0°.
+    diffuse += grains;
+    for (var k = 0u; k < paper.media.particle_count; k++) {
+        diffuse += gloss[k] * paper.media.particles[k].f_capture;
+    }
+#endif
+    var even = diffuse + vec3((1.0 - at_o.t) * surface);
+#ifdef SHEEN
+    let mirrored_even = sheen * sheen_albedo(max(dot(n, v), MU_MIN));
+    even = even * ((1.0 - mirrored_even) * (1.0 - sheen * SHEEN_MEAN)) + mirrored_even;
+#endif
+    radiance += even * paper.ambient * INV_PI;
+#else
     radiance += (diffuse + vec3(1.0 - at_o.t)) * paper.ambient * INV_PI;
+#endif
 #else
     radiance += brdf_lambert(s) * paper.ambient;
 #endif

@@ -17,8 +17,8 @@ use crate::{
         tier::Tier,
     },
     sheet::{
-        PAPER_BASELINES, PAPER_BSDF,
-        uniform::{InterfaceUniform, SplitUniform, ThroughUniform},
+        PAPER_BASELINES, PAPER_BSDF, PAPER_MEDIA,
+        uniform::{FilmUniform, InterfaceUniform, ParticleUniform, SplitUniform, ThroughUniform},
     },
 };
 
@@ -69,12 +69,13 @@ fn call(tier: Tier) -> &'static str {
 fn text(tier: Tier) -> String {
     let call = call(tier);
     format!(
-        "{PAPER_BSDF}\n{PAPER_BASELINES}
+        "{PAPER_BSDF}\n{PAPER_BASELINES}\n{PAPER_MEDIA}
         struct Specimen {{
             albedo: vec3<f32>, alpha: f32, eta: f32, f_normal: f32, specular: f32, f_capture: f32,
-            depth: vec3<f32>, depth_b: vec3<f32>, rho_f: vec3<f32>, rho_b: vec3<f32>,
             capture: vec4<f32>, paths: array<vec4<f32>, 12>,
-            table: InterfaceTable, split: Split, through: Through,
+            table: InterfaceTable, film: Film, split: Split, through: Through,
+            bare: vec3<f32>, body_albedo: vec3<f32>, body_through: vec3<f32>,
+            cover: Cover, particle: Particle,
         }}
         @group(0) @binding(0) var<storage, read> specimen: Specimen;
         @group(0) @binding(1) var<storage, read> given: array<f32>;
@@ -88,23 +89,33 @@ fn text(tier: Tier) -> String {
         fn study(
             s: Surface, g: Facing, at_i: Interface, at_o: Interface, mean: InterfaceMean, v_z: f32,
         ) -> vec3<f32> {{
+            let cover = specimen.cover;
+            let shares = shares_of(s, mean, specimen.bare, specimen.body_albedo, cover);
+            let share = uncovered_share(shares, specimen.bare);
+            let depth = optical_depth(specimen.film, specimen.capture, share) * cover.film;
             if v_z < 0.0 {{
                 let mu_o = max(-v_z, MU_MIN);
                 let seen = Seen(
-                    vec3(0.0), 1.0, specimen.depth_b, specimen.rho_f, specimen.rho_b,
+                    vec3(0.0), 1.0, depth, internal_reflectance(specimen.film, vec3(1.0)),
+                    internal_reflectance(specimen.film, share),
                 );
                 let row = interface_row(specimen.table, vec4(1.0, 0.0, 0.0, 0.0));
                 return btdf_study(
                     specimen.through, seen, at_i, interface_at(row, mu_o), mean,
                     path_at(g.mu_i), path_at(mu_o), s.eta,
-                );
+                ) * passing(cover, specimen.body_through);
             }}
-            let particle = Particle(vec3(0.0), 0.0, vec3(0.0), 0.0);
-            let shares = Shares(albedo_of(s, mean), 0.0, vec3(0.0));
+            let particle = specimen.particle;
+            let albedo = particle.albedo * shares.scale;
+            let mirrored = particle_capture(particle, particle.alpha);
+            let mirrors = particle_gloss(albedo, mirrored, shares.lit);
+            let grains = max(albedo - mirrored * mirrors, vec3(0.0)) * INV_PI
+                + particle_lobe(particle, particle.alpha, g) * mirrors;
             return brdf_study(
-                s, g, at_i, at_o, mean, specimen.split, specimen.depth,
-                Ways(specimen.capture, path_at(g.mu_i), path_at(g.mu_o)), particle, shares,
-            );
+                s, g, at_i, at_o, mean, specimen.split, depth,
+                Ways(specimen.capture, path_at(g.mu_i), path_at(g.mu_o)), shares.paper,
+                shares.surface,
+            ) + brdf_body(shares.body, at_i, at_o, mean) + grains * cover.particles;
         }}
         @compute @workgroup_size({WORKGROUP})
         fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{
@@ -138,20 +149,31 @@ struct SpecimenUniform {
     f_normal: f32,
     specular: f32,
     f_capture: f32,
-    depth: Vec3,
-    depth_b: Vec3,
-    rho_f: Vec3,
-    rho_b: Vec3,
     capture: Vec4,
     paths: [Vec4; PATH_MU],
     table: InterfaceUniform,
+    film: FilmUniform,
     split: SplitUniform,
     through: ThroughUniform,
+    bare: Vec3,
+    body_albedo: Vec3,
+    body_through: Vec3,
+    cover: CoverUniform,
+    particle: ParticleUniform,
+}
+
+/// Twin of `Cover`.
+#[derive(ShaderType)]
+struct CoverUniform {
+    film: f32,
+    body: f32,
+    particles: f32,
+    grains: Vec3,
 }
 
 fn constants(specimen: &Specimen) -> Result<Vec<u8>, ComputeError> {
     let s = &specimen.surface;
-    let seen = specimen.seen();
+    let cover = &specimen.cover;
     let uniform = SpecimenUniform {
         albedo: s.albedo.as_vec3(),
         alpha: s.alpha as f32,
@@ -159,16 +181,22 @@ fn constants(specimen: &Specimen) -> Result<Vec<u8>, ComputeError> {
         f_normal: s.f_normal as f32,
         specular: s.specular as f32,
         f_capture: s.f_capture as f32,
-        // Light from the front meets the ink that light through the sheet meets at its back.
-        depth: seen.depth_b.as_vec3(),
-        depth_b: seen.depth_b.as_vec3(),
-        rho_f: seen.rho_f.as_vec3(),
-        rho_b: seen.rho_b.as_vec3(),
         capture: specimen.capture().as_vec4(),
         paths: std::array::from_fn(|i| specimen.study.film.paths.nodes[i].as_vec4()),
         table: InterfaceUniform::new(&specimen.interface),
+        film: FilmUniform::new(&specimen.study.film),
         split: SplitUniform::new(&specimen.study.split),
         through: ThroughUniform::new(&specimen.study.through),
+        bare: specimen.study.bare.as_vec3(),
+        body_albedo: specimen.body_albedo.as_vec3(),
+        body_through: specimen.body_through.as_vec3(),
+        cover: CoverUniform {
+            film: cover.film as f32,
+            body: cover.body as f32,
+            particles: cover.particles as f32,
+            grains: cover.grains.as_vec3(),
+        },
+        particle: ParticleUniform::new(&specimen.particle),
     };
     let mut buffer = StorageBuffer::new(Vec::new());
     buffer

@@ -3,6 +3,7 @@
 //! Nothing else decides what is loaded or which pipeline is specialised; `recto check
 //! --explain` prints these reasons.
 
+mod lobes;
 mod matter;
 
 use glam::DVec2;
@@ -13,7 +14,7 @@ use crate::{
         RoughnessMap, Scene, Side, SideName, Surface,
     },
     maps::MatterSlot,
-    optics::{medium::ParticleConstants, tier::Tier},
+    optics::{matter::SideMedia, tier::Tier},
 };
 pub use matter::MediaStack;
 
@@ -38,6 +39,12 @@ pub struct Terms {
     /// How many textures tell the side's media apart: 0, 1, or 2 for more than two sorts of
     /// particles.
     pub matter: u32,
+    /// Metal or chalk lies on the side.
+    pub particles: bool,
+    /// Body colour lies on the side.
+    pub body: bool,
+    /// Ink or body colour has a surface of another refractive index than the paper's.
+    pub media_index: bool,
     /// A map decides where there is paper.
     pub outline: bool,
     /// The sheet's straight edge is smoothed.
@@ -61,6 +68,13 @@ pub struct Terms {
     pub transmission_map: bool,
     /// The other side has a picture, whose ink that light crosses.
     pub other_albedo: bool,
+    /// Body colour or particles on the other side hold light back.
+    pub other_matter: bool,
+    /// A share of the gloss goes back to the lamp.
+    pub retro: bool,
+    pub sheen: bool,
+    /// The gloss spreads more one way than across it.
+    pub anisotropic: bool,
     /// How many overlays lie on the side.
     pub overlays: u32,
 }
@@ -86,6 +100,8 @@ pub enum MapUse {
     Transmission(MapFile),
     /// What the other side shows, for light that comes through it.
     OtherAlbedo(ColourMap),
+    /// Shares of film, body colour and particles there, all sorts of these in one.
+    OtherMatter(MediaStack<MatterSlot>),
     Overlay(Overlay),
 }
 
@@ -101,7 +117,7 @@ impl MapUse {
             Self::Outline(file) | Self::Transmission(file) => file,
             Self::OtherAlbedo(map) => &map.file,
             Self::RoughnessOfMatter(stack, _) => &stack.file,
-            Self::Matter(stack) | Self::MatterMore(stack) => &stack.file,
+            Self::Matter(stack) | Self::MatterMore(stack) | Self::OtherMatter(stack) => &stack.file,
             Self::Overlay(overlay) => &overlay.file,
         }
     }
@@ -117,7 +133,9 @@ impl MapUse {
             Self::Outline(file) | Self::Transmission(file) => file,
             Self::OtherAlbedo(map) => &mut map.file,
             Self::RoughnessOfMatter(stack, _) => &mut stack.file,
-            Self::Matter(stack) | Self::MatterMore(stack) => &mut stack.file,
+            Self::Matter(stack) | Self::MatterMore(stack) | Self::OtherMatter(stack) => {
+                &mut stack.file
+            }
             Self::Overlay(overlay) => &mut overlay.file,
         }
     }
@@ -136,6 +154,7 @@ impl MapUse {
             Self::Outline(_) => "outline",
             Self::Transmission(_) => "transmission",
             Self::OtherAlbedo(_) => "albedo of the other side",
+            Self::OtherMatter(_) => "media of the other side",
             Self::Overlay(_) => "overlay",
         }
     }
@@ -151,7 +170,7 @@ impl MapUse {
             | Self::NormalFromHeight(..) => 8,
             Self::Roughness(_) | Self::Height(_) | Self::Transmission(_) => 2,
             Self::Outline(_) => 1,
-            Self::Matter(_) | Self::MatterMore(_) => 4,
+            Self::Matter(_) | Self::MatterMore(_) | Self::OtherMatter(_) => 4,
             Self::RoughnessOfMatter(..) => 1,
         };
         width * height * texel * 4 / 3
@@ -165,8 +184,10 @@ pub struct SideNeeds {
     pub terms: Terms,
     /// Overlays last, from the lowest.
     pub maps: Vec<MapUse>,
-    /// What its particles are made of, in the order of the matter maps' slots.
-    pub particles: Vec<ParticleConstants>,
+    /// What lies on it, where the tier tells media apart.
+    pub media: SideMedia,
+    /// What lies on the other side, where light comes through.
+    pub other_media: SideMedia,
 }
 
 /// What a scene requires.
@@ -223,7 +244,7 @@ fn side_needs(
 ) -> SideNeeds {
     let mut say = |text: String| reasons.push(format!("{}: {text}", name.word()));
     let mut maps = Vec::new();
-    let mut particles = Vec::new();
+    let mut media = SideMedia::default();
     let side = drawing.side_in_state(name, scene.state);
     let mut terms = Terms {
         tier,
@@ -271,8 +292,8 @@ fn side_needs(
                     say("no roughness map: nothing is specular".into());
                 }
             }
-            let alpha = drawing.paper.roughness;
-            particles = matter::matter(exhibit, side, alpha, &mut terms, &mut maps, &mut say);
+            let paper = &drawing.paper;
+            media = matter::matter(exhibit, side, paper, &mut terms, &mut maps, &mut say);
         }
     }
     if let Some(outline) = &drawing.outline {
@@ -282,7 +303,8 @@ fn side_needs(
         outline.uv_from_side *= drawing.recto_from(name);
         maps.push(MapUse::Outline(outline));
     }
-    transmission(
+    lobes::lobes(&drawing.paper, directional, &mut terms, &mut say);
+    let other_media = transmission(
         exhibit, scene, drawing, name, &mut terms, &mut maps, &mut say,
     );
     // The mesh of a curled sheet ends where the sheet does, and an outline cuts within it; a flat
@@ -309,6 +331,7 @@ fn side_needs(
                 | MapUse::Height(_)
                 | MapUse::Transmission(_)
                 | MapUse::OtherAlbedo(_)
+                | MapUse::OtherMatter(_)
         )
     });
     let first = of_side.next().map(|map| map.file().uv_from_side);
@@ -324,11 +347,12 @@ fn side_needs(
         side: name,
         terms,
         maps,
-        particles,
+        media,
+        other_media,
     }
 }
 
-/// Light through the sheet: from a light table behind it.
+/// Light through the sheet: from a light table behind it. Returns what lies on the other side.
 fn transmission(
     exhibit: &Exhibit,
     scene: &Scene,
@@ -337,10 +361,10 @@ fn transmission(
     terms: &mut Terms,
     maps: &mut Vec<MapUse>,
     say: &mut impl FnMut(String),
-) {
+) -> SideMedia {
     let behind = |&lamp: &usize| exhibit.lamps[lamp].kind.is_behind();
     if !scene.lamps.iter().any(behind) {
-        return;
+        return SideMedia::default();
     }
     say("light through the sheet, from the light table".into());
     terms.transmission = true;
@@ -361,7 +385,10 @@ fn transmission(
         ));
         terms.other_albedo = true;
         maps.push(MapUse::OtherAlbedo(albedo));
+        let turn = drawing.recto_from(SideName::Verso);
+        return matter::behind(exhibit, &other, turn, terms, maps, say);
     }
+    SideMedia::default()
 }
 
 /// The mesostructure, from a normal map or from the slopes of a height map.

@@ -16,6 +16,8 @@ mod colour;
 mod lamps;
 #[path = "frames/layers.rs"]
 mod layers;
+#[path = "frames/media.rs"]
+mod media;
 #[path = "frames/relief.rs"]
 mod relief;
 #[path = "frames/sheets.rs"]

@@ -18,10 +18,7 @@ use recto::{
         microfacet::v_smith,
         refraction::PathTable,
         slab::{Phase as TierPhase, Slab},
-        study::{
-            Particle, Seen, Split, Study, Ways, brdf_study, particle_shares, phase_lobe,
-            single_scatter, through_study,
-        },
+        study::{Seen, Split, Study, Ways, brdf_study, phase_lobe, single_scatter, through_study},
         table::{InterfaceMean, InterfaceTable},
         tier::{Surface, albedo_of, brdf_gallery, brdf_gallery_specular, capture_floor, facing},
     },
@@ -212,8 +209,7 @@ impl Side {
             self.table.at(g.mu_o, s.alpha),
         );
         let gloss = brdf_gallery_specular(&s, &g, &at_i, &at_o, &self.mean);
-        let none = Particle::default();
-        let shares = particle_shares(&s, &self.mean, self.study.bare, &none);
+        let paper = albedo_of(&s, &self.mean);
         let depth = self.depth(albedo);
         let study = brdf_study(
             &s,
@@ -224,8 +220,8 @@ impl Side {
             &self.study.split,
             depth,
             &self.ways(g.mu_i, g.mu_o),
-            &none,
-            &shares,
+            paper,
+            1.0,
         );
         let gallery = brdf_gallery(&s, &g, &at_i, &at_o, &self.mean);
         [gallery.x - gloss, study.x - gloss]

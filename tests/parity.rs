@@ -35,6 +35,8 @@ mod gpu;
 mod interfaces;
 #[path = "parity/lamps.rs"]
 mod lamps;
+#[path = "parity/media.rs"]
+mod media;
 #[path = "parity/relief.rs"]
 mod relief;
 #[path = "parity/study.rs"]

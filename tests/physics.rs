@@ -2,6 +2,10 @@
 
 #[path = "physics/baselines.rs"]
 mod baselines;
+#[path = "physics/lobes.rs"]
+mod lobes;
+#[path = "physics/matter.rs"]
+mod matter;
 
 use std::{f64::consts::PI, fs, path::Path, sync::Arc};
 

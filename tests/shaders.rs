@@ -15,16 +15,18 @@ use recto::{
     optics::{
         baselines::BASE_MIN,
         ink::FILM_TERMS,
+        lobes::SHEEN_MEAN,
+        matter::SHARE_LEAST,
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
         refraction::{PATH_ALPHA, PATH_MU},
         table::{ALPHA_FIT_MIN, LOST_TERMS, MU_TERMS},
     },
     sheet::{
-        PAPER_BASELINES, PAPER_BSDF, PAPER_MATERIAL,
+        PAPER_BASELINES, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA,
         uniform::{
-            FilmUniform, InterfaceUniform, LightUniform, MapPlace, PaperUniform, ParticleUniform,
-            SplitUniform, ThroughUniform,
+            FilmUniform, InterfaceUniform, LightUniform, MapPlace, MediaUniform, PaperUniform,
+            ParticleUniform, SplitUniform, ThroughUniform,
         },
     },
 };
@@ -43,7 +45,7 @@ fn validate(module: &naga::Module) -> Result<(), String> {
 
 /// All plain WGSL, in the order in which it is read.
 fn physics() -> String {
-    format!("{PAPER_BSDF}\n{PAPER_BASELINES}")
+    format!("{PAPER_BSDF}\n{PAPER_BASELINES}\n{PAPER_MEDIA}")
 }
 
 #[test]
@@ -136,7 +138,7 @@ fn members_that_end_in_a_digit(text: &str) -> Vec<String> {
 #[test]
 fn no_struct_member_ends_in_a_digit() {
     // Bevy's composer breaks on one with a type error, and the app then shows no sheet.
-    for text in [PAPER_BSDF, PAPER_BASELINES, PAPER_MATERIAL] {
+    for text in [PAPER_BSDF, PAPER_BASELINES, PAPER_MEDIA, PAPER_MATERIAL] {
         assert_eq!(members_that_end_in_a_digit(text), [""; 0]);
     }
     let bad =
@@ -179,11 +181,13 @@ fn signatures(text: &str, keyword: &str, open: char, close: char) -> BTreeMap<St
 }
 
 /// Functions of the twin sources that only the CPU calls.
-const CPU_ONLY: [&str; 5] = [
+const CPU_ONLY: [&str; 7] = [
     "capture_path",
     "directional_albedo",
+    "layer_of_pigment",
     "normal_reflectance",
     "polygon_form",
+    "stretch",
     "ways_back",
 ];
 /// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
@@ -262,6 +266,8 @@ fn constants_of_the_shaders_are_those_of_the_sources() {
     assert!(PAPER_MATERIAL.contains(&format!("min(u32(x), {}u)", PATH_MU - 2)));
     assert!(PAPER_MATERIAL.contains(&format!("min(u32(s), {}u)", PATH_ALPHA - 2)));
     assert_eq!(constant(PAPER_BASELINES, "BASE_MIN"), BASE_MIN);
+    assert_eq!(constant(PAPER_MEDIA, "SHARE_LEAST"), SHARE_LEAST);
+    assert_eq!(constant(PAPER_MEDIA, "SHEEN_MEAN"), SHEEN_MEAN);
 }
 
 /// Bytes of a value as the uniform buffer holds them.
@@ -342,8 +348,29 @@ impl Sentinel {
             n: self.vec3(),
             alpha: self.f32(),
             k: self.vec3(),
-            spare: self.f32(),
+            f_capture: self.vec3(),
             albedo: self.vec3(),
+        })
+    }
+
+    fn media(&mut self) -> (MediaUniform, Fields) {
+        filled!(MediaUniform {
+            particles: std::array::from_fn::<_, MAX_PARTICLES, _>(|_| self.particle().0),
+            body_albedo: self.vec3(),
+            particle_count: self.u32(),
+            body_through: self.vec3(),
+            film_eta: self.f32(),
+            film_gain: self.vec3(),
+            body_eta: self.f32(),
+            other_body_albedo: self.vec3(),
+            film_reflects: self.f32(),
+            other_body_through: self.vec3(),
+            body_reflects: self.f32(),
+            other_grains: self.vec3(),
+            sheen: self.f32(),
+            along: self.vec2(),
+            stretch: self.f32(),
+            retro: self.f32(),
         })
     }
 
@@ -415,7 +442,7 @@ impl Sentinel {
             normal_place: self.map_place().0,
             roughness_place: self.map_place().0,
             matter_place: self.map_place().0,
-            particles: std::array::from_fn::<_, MAX_PARTICLES, _>(|_| self.particle().0),
+            media: self.media().0,
             outline_place: self.map_place().0,
             level: self.vec4(),
             light_table: self.vec3(),
@@ -435,6 +462,7 @@ impl Sentinel {
             other_bare: self.vec3(),
             clear_scale: self.f32(),
             other_place: self.map_place().0,
+            other_matter_place: self.map_place().0,
             transmission_place: self.map_place().0,
             height_place: self.map_place().0,
             height_range: self.vec2(),
@@ -494,6 +522,7 @@ fn uniforms_lie_in_memory_as_the_shader_reads_them() {
     let table = whole(sentinel.interface());
     let place = whole(sentinel.map_place());
     let particle = whole(sentinel.particle());
+    let media = whole(sentinel.media());
     let paper = whole(sentinel.paper());
     let physics = parse(PAPER_BSDF);
     let glue = Composer::new("")
@@ -510,7 +539,8 @@ fn uniforms_lie_in_memory_as_the_shader_reads_them() {
         misread(&glue, "Light", &light),
         misread(&glue, "InterfaceTable", &table),
         misread(&glue, "MapPlace", &place),
-        misread(&glue, "ParticleSlot", &particle),
+        misread(&glue, "Particle", &particle),
+        misread(&glue, "Media", &media),
         misread(&glue, "Paper", &paper),
     ] {
         assert_eq!(faults, [""; 0]);
@@ -541,6 +571,10 @@ fn members_out_of_place_are_found() {
 const TIERS: [&str; 4] = ["TIER_LAMBERT", "TIER_DRAFT", "TIER_GALLERY", "TIER_STUDY"];
 /// Defined with these tiers, and with them alone.
 const COUPLED: [&str; 2] = ["TIER_GALLERY", "TIER_STUDY"];
+/// Defined with these terms, and with them alone.
+const GLOSS: [&str; 2] = ["RETRO", "ANISOTROPIC"];
+/// What follows from other definitions.
+const DERIVED: [&str; 3] = ["COUPLED", "PATHS", "GLOSS"];
 /// These differ in the function that is called, and in nothing else.
 const BASELINES: [&str; 9] = [
     "TIER_ISLE",
@@ -567,25 +601,74 @@ fn the_material_defines_what_the_glue_asks_for() {
     assert_eq!(asked.collect::<BTreeSet<_>>(), tiers);
 }
 
-/// Whether a side can need these terms: see `side_needs` in src/needs.rs.
+/// Terms that are needed with others only: see `side_needs` in src/needs.rs. The needed stand
+/// before those that need them.
+const NEEDS: [(&str, &str); 17] = [
+    // A side without maps is bare paper.
+    ("NORMAL_MAP", "ALBEDO_MAP"),
+    ("ROUGHNESS_MAP", "ALBEDO_MAP"),
+    ("TRANSMISSION_MAP", "TRANSMISSION"),
+    ("OTHER_ALBEDO", "TRANSMISSION"),
+    ("OTHER_MATTER", "OTHER_ALBEDO"),
+    ("OTHER_MATTER", "TIER_STUDY"),
+    ("MATTER", "ALBEDO_MAP"),
+    ("MATTER", "TIER_STUDY"),
+    ("PARTICLES", "MATTER"),
+    ("BODY", "MATTER"),
+    ("MEDIA_INDEX", "MATTER"),
+    ("MATTER_MORE", "PARTICLES"),
+    ("RETRO", "TIER_STUDY"),
+    ("ANISOTROPIC", "TIER_STUDY"),
+    ("SHEEN", "TIER_STUDY"),
+    ("RELIEF_SHADOWS", "TIER_STUDY"),
+    ("RELIEF_SHADOWS", "ALBEDO_MAP"),
+];
+
+/// Whether a side can need these terms.
 fn can_occur(defined: &[&str]) -> bool {
     let has = |name| defined.contains(&name);
     let tiers = TIERS.iter().chain([&BASELINES[0]]);
-    let tiers = tiers.filter(|tier| has(tier)).count();
-    // A side without maps is bare paper, nothing of the Lambert tier is rough, and the draft
-    // tier takes a rectangle for a point.
-    tiers == 1
-        && (has("ALBEDO_MAP") || !(has("NORMAL_MAP") || has("ROUGHNESS_MAP")))
+    // Nothing of the Lambert tier is rough, and the draft tier takes a rectangle for a point.
+    tiers.filter(|tier| has(tier)).count() == 1
+        && NEEDS.iter().all(|(term, needed)| has(needed) || !has(term))
         && !(has("TIER_LAMBERT") && has("ROUGHNESS_MAP"))
-        && (has("TRANSMISSION") || !(has("TRANSMISSION_MAP") || has("OTHER_ALBEDO")))
-        && (has("ALBEDO_MAP") || !has("MATTER"))
-        && (has("MATTER") || !has("MATTER_MORE"))
         && !(has("AREA_LAMPS") && (has("DISTANT_LAMPS") || has("TIER_DRAFT")))
 }
 
-/// Of the sets of bits, as few as show every four bits in each of their sixteen states that
-/// occurs at all.
-fn every_four(sets: impl Iterator<Item = u32>, bits: u32) -> Vec<u32> {
+/// How many needs are drawn: each that shows four terms in a state that occurs is one in some
+/// thousands of them.
+const DRAWN: u64 = 100_000;
+
+/// Needs at random, the same each time; most at the study tier, which has most terms.
+fn drawn(names: &[&str]) -> impl Iterator<Item = u64> {
+    let bit = |name: &str| 1 << names.iter().position(|each| *each == name).expect(name);
+    let tiers: Vec<u64> = TIERS
+        .iter()
+        .chain([&BASELINES[0]])
+        .map(|tier| bit(tier))
+        .collect();
+    let needs = NEEDS.map(|(term, needed)| (bit(term), bit(needed)));
+    let study = bit("TIER_STUDY");
+    (0..DRAWN).map(move |i| {
+        let mut z = i.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        let (set, turn) = (z ^ (z >> 31), i as usize);
+        let tier = if turn % 2 == 0 {
+            study
+        } else {
+            tiers[turn / 2 % tiers.len()]
+        };
+        let none = tiers.iter().fold(set, |set, tier| set & !tier);
+        needs.iter().fold(none | tier, |set, (term, needed)| {
+            if set & needed == 0 { set & !term } else { set }
+        })
+    })
+}
+
+/// Of the sets of bits, as few as show every four bits in each of the sixteen states that some
+/// set shows.
+fn every_four(sets: impl Iterator<Item = u64>, bits: u32) -> Vec<u64> {
     let mut fours = Vec::new();
     for a in 0..bits {
         for b in a + 1..bits {
@@ -617,16 +700,14 @@ fn the_glue_is_valid_for_every_four_terms() {
     let names: Vec<&str> = DEFINITIONS
         .iter()
         .copied()
-        .filter(|name| !BASELINES[1..].contains(name) && !["COUPLED", "PATHS"].contains(name))
+        .filter(|name| !BASELINES[1..].contains(name) && !DERIVED.contains(name))
         .collect();
     let bits = names.len() as u32;
-    let defined = |set: u32| -> Vec<&str> {
+    let defined = |set: u64| -> Vec<&str> {
         let on = (0..names.len()).filter(|i| set >> i & 1 == 1);
         on.map(|i| names[i]).collect()
     };
-    // An odd step visits every set once, and neighbours differ in many bits.
-    let all = (0..1u32 << bits).map(|i| i.wrapping_mul(0x9e37_79b1) & ((1 << bits) - 1));
-    let needs = every_four(all.filter(|&set| can_occur(&defined(set))), bits);
+    let needs = every_four(drawn(&names).filter(|&set| can_occur(&defined(set))), bits);
     assert!(needs.len() > 100);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
@@ -635,15 +716,12 @@ fn the_glue_is_valid_for_every_four_terms() {
                 let mut composer = Composer::new("");
                 for (turn, &set) in share.iter().enumerate() {
                     let mut defined = defined(set);
-                    if COUPLED.iter().any(|tier| defined.contains(tier)) {
-                        defined.push("COUPLED");
-                        if ["TIER_STUDY", "TRANSMISSION"]
-                            .iter()
-                            .any(|term| defined.contains(term))
-                        {
-                            defined.push("PATHS");
-                        }
-                    }
+                    let any = |terms: &[&str]| terms.iter().any(|term| defined.contains(term));
+                    let (coupled, gloss) = (any(&COUPLED), any(&GLOSS));
+                    let paths = coupled && any(&["TIER_STUDY", "TRANSMISSION"]);
+                    defined.extend(coupled.then_some("COUPLED"));
+                    defined.extend(paths.then_some("PATHS"));
+                    defined.extend(gloss.then_some("GLOSS"));
                     if let Some(tier) = defined.iter_mut().find(|name| **name == BASELINES[0]) {
                         *tier = BASELINES[turn % BASELINES.len()];
                     }
@@ -655,6 +733,83 @@ fn the_glue_is_valid_for_every_four_terms() {
         }
     });
     eprintln!("{} shaders composed and validated", needs.len());
+}
+
+/// What no paper and no media ask for is not in the shader.
+#[test]
+fn terms_that_are_not_needed_are_absent() {
+    let mut composer = Composer::new("");
+    let mut functions = |more: &[&str]| -> BTreeSet<String> {
+        let always = [
+            "TIER_STUDY",
+            "COUPLED",
+            "PATHS",
+            "ALBEDO_MAP",
+            "DISTANT_LAMPS",
+            "ONE_LAMP",
+        ];
+        let module = composer.compose(&[&always, more].concat()).unwrap();
+        let mut reached = BTreeSet::new();
+        let mut left: Vec<&naga::Function> = module
+            .entry_points
+            .iter()
+            .map(|entry| &entry.function)
+            .collect();
+        while let Some(function) = left.pop() {
+            for called in calls(&function.body) {
+                let name = module.functions[called].name.clone().unwrap_or_default();
+                let name = name
+                    .split("X_naga_oil")
+                    .next()
+                    .unwrap_or_default()
+                    .to_owned();
+                if reached.insert(name) {
+                    left.push(&module.functions[called]);
+                }
+            }
+        }
+        reached
+    };
+    let plain = functions(&[]);
+    assert!(plain.contains("brdf_study"));
+    for (terms, own) in [
+        (&["MATTER"][..], "shares_of"),
+        (&["MATTER", "PARTICLES"], "particle_lobe"),
+        (&["MATTER", "BODY"], "brdf_body"),
+        (&["MATTER", "MEDIA_INDEX"], "interface_of"),
+        (&["GLOSS", "RETRO"], "turned"),
+        (&["GLOSS", "ANISOTROPIC"], "gloss_lobe_anisotropic"),
+        (&["SHEEN"], "brdf_sheen"),
+    ] {
+        assert!(!plain.contains(own), "{own}");
+        assert!(functions(terms).contains(own), "{terms:?}: {own}");
+    }
+}
+
+/// The functions that statements call.
+fn calls(block: &naga::Block) -> Vec<naga::Handle<naga::Function>> {
+    let mut found = Vec::new();
+    for statement in block.iter() {
+        match statement {
+            naga::Statement::Call { function, .. } => found.push(*function),
+            naga::Statement::Block(block) => found.extend(calls(block)),
+            naga::Statement::If { accept, reject, .. } => {
+                found.extend(calls(accept));
+                found.extend(calls(reject));
+            }
+            naga::Statement::Switch { cases, .. } => {
+                found.extend(cases.iter().flat_map(|case| calls(&case.body)));
+            }
+            naga::Statement::Loop {
+                body, continuing, ..
+            } => {
+                found.extend(calls(body));
+                found.extend(calls(continuing));
+            }
+            _ => {}
+        }
+    }
+    found
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::{
     manifest::{did_you_mean, quote},
     optics::{
         bsdf::{COLUMNS, Pair, Sample, Specimen, read_pairs},
-        medium::MediumId,
+        medium::{MediumId, Preset},
         tier::Tier,
     },
 };
@@ -24,19 +24,39 @@ pub struct Arguments {
     /// A paper or drawing medium of the catalogue
     #[arg(long, value_name = "NAME")]
     medium: String,
+    /// Whose constants: of the visible range, or those that the ISLe article prints
+    #[arg(long, value_enum, default_value_t = Optics::Recto)]
+    optics: Optics,
     /// How exactly light is calculated
     #[arg(long, default_value_t, value_parser = options::tier())]
     tier: Tier,
     /// What calculates: f64, or the shader
     #[arg(long, value_enum, default_value_t = Device::Cpu)]
     device: Device,
-    /// Reflectance of the medium as photographed, linear sRGB, 0 to 1 each
+    /// Reflectance of the medium as photographed, linear sRGB, 0 to 1 each; a drawn one at full
+    /// coverage
     #[arg(long, value_name = "R,G,B", default_value = ALBEDO, value_parser = albedo)]
     albedo: DVec3,
     /// CSV with the columns theta_i, phi_i, theta_o, phi_o in degrees; theta_o above 90 is light
     /// that goes through
     #[arg(long, value_name = "FILE.csv")]
     pairs: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Optics {
+    Recto,
+    #[value(name = "isle-2021")]
+    Isle2021,
+}
+
+impl From<Optics> for Preset {
+    fn from(optics: Optics) -> Self {
+        match optics {
+            Optics::Recto => Self::Recto,
+            Optics::Isle2021 => Self::Isle2021,
+        }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -75,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             .map(|fault| format!("{}: {fault}", path.display()));
         Failure::Input(lines.collect::<Vec<_>>().join("\n").into())
     })?;
-    let specimen = Specimen::new(medium.medium(), arguments.albedo);
+    let specimen = Specimen::new(&medium.of_preset(arguments.optics.into()), arguments.albedo);
     let samples = match arguments.device {
         Device::Cpu => pairs
             .iter()

@@ -129,7 +129,7 @@ pub struct Paper {
     pub sheen: f64,
     /// Of the specular lobe, in [0, 1].
     pub anisotropy: f64,
-    /// Direction of the lobe's longer axis, from the side's x axis anticlockwise.
+    /// Direction of the lobe's longer axis, anticlockwise from the right as the recto is seen.
     pub anisotropy_angle: Degrees,
     pub source: Source,
 }

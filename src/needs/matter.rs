@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
+use glam::DAffine2;
+
 use super::{MapUse, Terms};
 use crate::{
-    manifest::exhibit::{Exhibit, MapFile, MediaContent, MediaMap, Side},
+    manifest::exhibit::{Exhibit, MapFile, MediaContent, MediaMap, Paper, Side},
     maps::{MatterSlot, MediaChannels, MediaLayer},
-    optics::{
-        medium::{Matter, ParticleConstants},
-        tier::Tier,
-    },
+    optics::{matter::SideMedia, medium::Matter, tier::Tier},
 };
 
 /// Particles of the sorts that a matter map's first texture holds.
@@ -51,20 +50,20 @@ impl<T> MediaStack<T> {
 }
 
 /// The maps that tell a side's media apart, and the roughness that follows from them. Returns
-/// what its particles are made of, in the order of their slots.
+/// the media; those of a tier that knows none are none.
 pub(super) fn matter(
     exhibit: &Exhibit,
     side: &Side,
-    paper_alpha: f64,
+    paper: &Paper,
     terms: &mut Terms,
     maps: &mut Vec<MapUse>,
     say: &mut impl FnMut(String),
-) -> Vec<ParticleConstants> {
+) -> SideMedia {
     let media = &side.media;
     let matter_of = |medium: usize| exhibit.media[medium].matter;
     let mut used = media.iter().flat_map(|map| map.content.media());
     if !used.any(|medium| matter_of(medium) != Matter::Relief) {
-        return Vec::new();
+        return SideMedia::default();
     }
     let alpha = |medium| match matter_of(medium) {
         Matter::Relief => None,
@@ -76,7 +75,7 @@ pub(super) fn matter(
     {
         say("roughness from the media maps, for the specular lobe: no map of it is given".into());
         terms.roughness_map = true;
-        maps.push(MapUse::RoughnessOfMatter(stack, paper_alpha));
+        maps.push(MapUse::RoughnessOfMatter(stack, paper.roughness));
     }
     if terms.tier != Tier::Study {
         say(
@@ -84,21 +83,18 @@ pub(super) fn matter(
              body colours apart"
                 .into(),
         );
-        return Vec::new();
+        return SideMedia::default();
     }
-    let particles = particles(exhibit, media);
+    let sorts = particles(exhibit, media);
     let slot = |medium| match matter_of(medium) {
-        Matter::Film(_) => MatterSlot::Film,
-        Matter::Body(_) => MatterSlot::Body,
         Matter::Particles(_) => {
-            let slot = particles.iter().position(|of_slot| *of_slot == medium);
+            let slot = sorts.iter().position(|of_slot| *of_slot == medium);
             slot.map_or(MatterSlot::Nothing, MatterSlot::Particles)
         }
-        // A manifest names no paper in a media map.
-        Matter::Relief | Matter::Paper(_) => MatterSlot::Nothing,
+        other => slot_of(&other),
     };
     let Some(stack) = MediaStack::new(media, slot) else {
-        return Vec::new();
+        return SideMedia::default();
     };
     let names: Vec<String> = media.iter().map(|map| file_name(&map.file.path)).collect();
     say(format!(
@@ -108,22 +104,84 @@ pub(super) fn matter(
     ));
     terms.matter = 1;
     maps.push(MapUse::Matter(stack.clone()));
-    if particles.len() > PARTICLES_OF_FIRST {
+    if sorts.len() > PARTICLES_OF_FIRST {
         say(format!(
             "a second texture for them: the side has {} sorts of particles, and the first holds \
              {PARTICLES_OF_FIRST}",
-            particles.len()
+            sorts.len()
         ));
         terms.matter = 2;
         maps.push(MapUse::MatterMore(stack));
     }
-    particles
-        .into_iter()
-        .filter_map(|medium| match matter_of(medium) {
-            Matter::Particles(constants) => Some(constants),
-            _ => None,
-        })
-        .collect()
+    let media = side_media(exhibit, media);
+    if !media.particles.is_empty() {
+        say("a lobe for each sort of metal and chalk".into());
+        terms.particles = true;
+    }
+    terms.body = !media.bodies.is_empty();
+    if media.index_differs(paper.index) {
+        say("the refractive index of ink and body colour, which is not the paper's".into());
+        terms.media_index = true;
+    }
+    media
+}
+
+/// The media of the other side, where they hold back light that comes through. `turn` leads
+/// from that side to this one.
+pub(super) fn behind(
+    exhibit: &Exhibit,
+    other: &Side,
+    turn: DAffine2,
+    terms: &mut Terms,
+    maps: &mut Vec<MapUse>,
+    say: &mut impl FnMut(String),
+) -> SideMedia {
+    if terms.tier != Tier::Study {
+        return SideMedia::default();
+    }
+    let media = side_media(exhibit, &other.media);
+    if media.bodies.is_empty() && media.particles.is_empty() {
+        return SideMedia::default();
+    }
+    let slot = |medium: usize| slot_of(&exhibit.media[medium].matter);
+    let Some(mut stack) = MediaStack::new(&other.media, slot) else {
+        return SideMedia::default();
+    };
+    say("media maps of the other side: particles and body colour there hold light back".into());
+    stack.file.uv_from_side *= turn;
+    terms.other_matter = true;
+    maps.push(MapUse::OtherMatter(stack));
+    media
+}
+
+/// All sorts of particles in one slot.
+fn slot_of(matter: &Matter) -> MatterSlot {
+    match matter {
+        Matter::Film(_) => MatterSlot::Film,
+        Matter::Body(_) => MatterSlot::Body,
+        Matter::Particles(_) => MatterSlot::Particles(0),
+        // A manifest names no paper in a media map.
+        Matter::Relief | Matter::Paper(_) => MatterSlot::Nothing,
+    }
+}
+
+/// The constants of all media that these maps name, each medium once.
+fn side_media(exhibit: &Exhibit, media: &[MediaMap]) -> SideMedia {
+    let mut found = SideMedia::default();
+    let mut seen = Vec::new();
+    for medium in media.iter().flat_map(|map| map.content.media()) {
+        if seen.contains(&medium) {
+            continue;
+        }
+        seen.push(medium);
+        match exhibit.media[medium].matter {
+            Matter::Film(film) => found.films.push(film),
+            Matter::Body(body) => found.bodies.push(body),
+            Matter::Particles(particles) => found.particles.push(particles),
+            Matter::Relief | Matter::Paper(_) => {}
+        }
+    }
+    found
 }
 
 /// The media of a side that are particles, each once, in the order in which they lie.

@@ -1,10 +1,8 @@
 //! A tier's BSDF at pairs of directions, for tables: `recto bsdf`.
 
-use std::sync::Arc;
+use std::{f64::consts::PI, sync::Arc};
 
 use glam::{DVec3, DVec4};
-
-use crate::units::Micrometres;
 
 use super::{
     baselines::{
@@ -13,18 +11,23 @@ use super::{
         off_mirror,
     },
     ink::{capture_path, internal_reflectance, optical_depth},
-    medium::{Medium, MediumKind},
+    matter::{
+        Cover, Media, Particle, Shares, SideMedia, brdf_body, particle_capture, particle_gloss,
+        particle_lobe, passing, shares_of, uncovered_share,
+    },
+    medium::{Matter, Medium},
     microfacet::MU_MIN,
     refraction::{PathTable, crossed},
-    slab::Slab,
-    study::{Particle, Seen, Shares, Study, Ways, brdf_study, btdf_study},
+    slab::{Phase, Slab, UM_PER_MM},
+    study::{Seen, Study, Ways, brdf_study, btdf_study},
     table::InterfaceTable,
-    tier::{Surface, Tier, albedo_of, brdf_draft, brdf_gallery, brdf_lambert, facing},
+    tier::{Facing, Surface, Tier, brdf_draft, brdf_gallery, brdf_lambert, facing},
 };
+use crate::units::Micrometres;
 
 /// The columns that are read, in this order.
 pub const COLUMNS: [&str; 4] = ["theta_i", "phi_i", "theta_o", "phi_o"];
-/// What a drawn medium lies on, linear sRGB.
+/// What a drawn medium lies on, linear sRGB: paper of the catalogue's usual scattering.
 const DRAWN_ON: DVec3 = DVec3::splat(0.8);
 /// The least and the most that they may hold, in degrees.
 const RANGES: [[f64; 2]; 4] = [[0.0, 90.0], [-360.0, 360.0], [0.0, 180.0], [-360.0, 360.0]];
@@ -71,37 +74,84 @@ pub struct Specimen {
     pub interface: InterfaceTable,
     /// The paper, or what a drawn medium lies on.
     pub study: Study,
+    /// What a drawn medium is: ink, body colour or particles, at full coverage.
+    pub cover: Cover,
+    pub particle: Particle,
+    pub body_albedo: DVec3,
+    pub body_through: DVec3,
 }
 
-/// Thickness of a specimen's sheet.
+/// Thickness of the sheet under a drawn medium.
 const THICKNESS: Micrometres = Micrometres(150.0);
 /// How near to opposite each other two directions are one, as the sum of their unit vectors.
 const OPPOSITE: f64 = 1e-6;
 
 impl Specimen {
-    /// `medium` where it photographs with this `albedo` (linear sRGB, each in [0, 1]).
+    /// `medium` where it photographs with this `albedo` (linear sRGB, each in [0, 1]), a drawn
+    /// one at full coverage on paper that photographs .8.
     pub fn new(medium: &Medium, albedo: DVec3) -> Self {
         let surface = Surface::new(albedo, medium.roughness(), medium.index(), 1.0);
         let interface = InterfaceTable::at_roughness(surface.alpha, medium.index(), 1.0);
-        let bare = match medium.kind {
-            MediumKind::Paper => surface,
-            MediumKind::Drawn => Surface {
-                albedo: DRAWN_ON,
-                ..surface
-            },
+        let mean = interface.mean_at(surface.alpha);
+        let sheet = Slab::rag_paper(THICKNESS);
+        let (bare, slab) = match medium.matter {
+            Matter::Paper(paper) => (
+                albedo,
+                Slab {
+                    scattering: paper.scattering_per_mm,
+                    thickness: paper.thickness_um / UM_PER_MM,
+                    phase: Phase {
+                        forward_share: paper.forward_share,
+                        g_forward: paper.g_forward,
+                        g_backward: paper.g_backward,
+                    },
+                    ..sheet
+                },
+            ),
+            // A groove is the paper's own.
+            Matter::Relief => (albedo, sheet),
+            _ => (DRAWN_ON, sheet),
+        };
+        let bare = Surface {
+            albedo: bare,
+            ..surface
         };
         let paths = Arc::new(PathTable::at_roughness(surface.alpha, medium.index()));
-        let study = Study::new(&bare, &interface, paths, Slab::rag_paper(THICKNESS));
+        let study = Study::new(&bare, &interface, paths, slab);
+        let mut cover = Cover::default();
+        let mut side = SideMedia::default();
+        let mut particle = Particle {
+            alpha: 1.0,
+            ..Particle::default()
+        };
+        match medium.matter {
+            Matter::Film(_) => cover.film = 1.0,
+            Matter::Body(body) => {
+                cover.body = 1.0;
+                side.bodies.push(body);
+            }
+            Matter::Particles(particles) => {
+                particle = Particle::new(&particles);
+                cover.particles = 1.0;
+                cover.grains = particle.albedo;
+            }
+            Matter::Paper(_) | Matter::Relief => {}
+        }
+        let media = Media::new(&side, &bare, &mean, &study);
         Self {
             surface,
             interface,
             study,
+            cover,
+            particle,
+            body_albedo: media.body_albedo,
+            body_through: media.body_through,
         }
     }
 
     /// What light through the sheet meets: a drawn medium on the side of the light.
     pub fn seen(&self) -> Seen {
-        let share = self.share();
+        let share = uncovered_share(&self.shares(), self.study.bare);
         Seen {
             depth_f: DVec3::ZERO,
             depth_b: self.depth(),
@@ -109,12 +159,6 @@ impl Specimen {
             rho_b: internal_reflectance(&self.study.film, share),
             clear: 1.0,
         }
-    }
-
-    /// τ of the ink.
-    fn depth(&self) -> DVec3 {
-        let film = &self.study.film;
-        optical_depth(film, self.capture(), self.share())
     }
 
     /// The path through its film in the geometry of capture.
@@ -127,10 +171,17 @@ impl Specimen {
         self.study.film.paths.at(mu, self.surface.alpha)
     }
 
-    /// Photographed share of the bare paper's diffuse albedo.
-    fn share(&self) -> DVec3 {
+    fn shares(&self) -> Shares {
         let mean = self.interface.mean_at(self.surface.alpha);
-        albedo_of(&self.surface, &mean) / self.study.bare
+        let (bare, body) = (self.study.bare, self.body_albedo);
+        shares_of(&self.surface, &mean, bare, body, &self.cover)
+    }
+
+    /// τ of the ink.
+    pub fn depth(&self) -> DVec3 {
+        let film = &self.study.film;
+        let share = uncovered_share(&self.shares(), self.study.bare);
+        optical_depth(film, self.capture(), share) * self.cover.film
     }
 
     /// The BSDF of `tier` at `pair`. Light goes through the sheet in the study tier alone.
@@ -157,7 +208,7 @@ impl Specimen {
         // Both cosines are taken from the side that they are on.
         let (mu_i, mu_o) = (l.z.max(MU_MIN), (-v.z).max(MU_MIN));
         let at = |mu: f64| self.interface.at(mu, s.alpha);
-        btdf_study(
+        let f = btdf_study(
             &self.study.through,
             &self.seen(),
             &at(mu_i),
@@ -166,7 +217,8 @@ impl Specimen {
             self.path(mu_i),
             self.path(mu_o),
             s.eta,
-        )
+        );
+        f * passing(&self.cover, self.body_through)
     }
 
     /// What goes straight through, to an eye opposite the light.
@@ -178,7 +230,32 @@ impl Specimen {
         let mu = l.z.max(MU_MIN);
         let t = self.interface.at(mu, self.surface.alpha).t;
         let depth = self.seen().depth_b + self.study.through.ballistic;
-        t * t * crossed(self.path(mu), depth)
+        let passed = passing(&self.cover, self.body_through);
+        passed * (t * t) * crossed(self.path(mu), depth)
+    }
+
+    fn studied(&self, g: &Facing) -> DVec3 {
+        let s = &self.surface;
+        let mean = self.interface.mean_at(s.alpha);
+        let [at_i, at_o] = [g.mu_i, g.mu_o].map(|mu| self.interface.at(mu, s.alpha));
+        let shares = self.shares();
+        let particle = &self.particle;
+        let albedo = particle.albedo * shares.scale;
+        let mirrored = particle_capture(particle, particle.alpha);
+        let mirrors = particle_gloss(albedo, mirrored, shares.lit);
+        let (split, depth) = (&self.study.split, self.depth());
+        let (paper, surface) = (shares.paper, shares.surface);
+        let grains = (albedo - mirrored * mirrors).max(DVec3::ZERO) / PI
+            + particle_lobe(particle, particle.alpha, g) * mirrors;
+        let ways = Ways {
+            capture: self.capture(),
+            path_i: self.path(g.mu_i),
+            path_o: self.path(g.mu_o),
+        };
+        brdf_study(
+            s, g, &at_i, &at_o, &mean, split, depth, &ways, paper, surface,
+        ) + brdf_body(shares.body, &at_i, &at_o, &mean)
+            + grains * self.cover.particles
     }
 
     fn reflected(&self, tier: Tier, l: DVec3, v: DVec3) -> DVec3 {
@@ -192,30 +269,7 @@ impl Specimen {
                 let mean = self.interface.mean_at(s.alpha);
                 brdf_gallery(s, &g, &at(g.mu_i), &at(g.mu_o), &mean)
             }
-            Tier::Study => {
-                let at = |mu: f64| self.interface.at(mu, s.alpha);
-                let mean = self.interface.mean_at(s.alpha);
-                let shares = Shares {
-                    paper: albedo_of(s, &mean),
-                    ..Shares::default()
-                };
-                brdf_study(
-                    s,
-                    &g,
-                    &at(g.mu_i),
-                    &at(g.mu_o),
-                    &mean,
-                    &self.study.split,
-                    self.depth(),
-                    &Ways {
-                        capture: self.capture(),
-                        path_i: self.path(g.mu_i),
-                        path_o: self.path(g.mu_o),
-                    },
-                    &Particle::default(),
-                    &shares,
-                )
-            }
+            Tier::Study => self.studied(&g),
             Tier::Isle => brdf_isle(s, &g),
             Tier::Lambert => brdf_lambert(s),
             Tier::Phong => brdf_phong(s, off),
@@ -330,7 +384,9 @@ mod tests {
                     let sound = sample.f.is_finite() && sample.f.min_element() >= 0.0;
                     assert!(sound, "{tier}");
                     let through = at(theta_i, 180.0 - theta_i.min(89.0));
-                    assert_eq!(through.f.max_element() > 0.0, tier == Tier::Study, "{tier}");
+                    let passes =
+                        tier == Tier::Study && !matches!(id.medium().matter, Matter::Particles(_));
+                    assert_eq!(through.f.max_element() > 0.0, passes, "{id} {tier}");
                 }
             }
         }

@@ -80,13 +80,13 @@ pub struct PaperConstants {
     pub thickness_um: f64,
     /// Of the bare sheet as photographed at 45°/0°, 0 to 1.
     pub albedo: [f64; 3],
-    /// Strength of the retro-reflective lobe, 0 (off) to 1.
+    /// Share of the gloss that goes back to the lamp, 0 (off) to 1.
     pub retro: f64,
-    /// Strength of the sheen lobe, 0 (off) to 1.
+    /// Strength of the sheen lobe, 0 (off) to 1 sr⁻¹ at grazing angles.
     pub sheen: f64,
     /// Of the specular lobe, 0 (none) to 1.
     pub anisotropy: f64,
-    /// Direction of the lobe's longer axis, from the side's x axis anticlockwise.
+    /// Direction of the lobe's longer axis, anticlockwise from the right as the recto is seen.
     pub anisotropy_deg: f64,
 }
 
@@ -110,7 +110,8 @@ pub struct ParticleConstants {
     pub k: [f64; 3],
     /// GGX roughness α of the surface that they form, 0.01 to 1.
     pub roughness: f64,
-    /// Of their diffuse part at full coverage, 0 to 1.
+    /// At full coverage as photographed at 45°/0°, 0 to 1: what they mirror into the photograph
+    /// is in it.
     pub albedo: [f64; 3],
 }
 

@@ -11,7 +11,7 @@
 //!
 //! Directions point away from the surface, in the *local frame*: x right, y up on the side
 //! that is looked at, z out of it. Functions with a twin in `shaders/paper_bsdf.wgsl` (or
-//! `paper_baselines.wgsl`) carry the twin's name and order.
+//! `paper_baselines.wgsl`, `paper_media.wgsl`) carry the twin's name and order.
 
 pub mod baselines;
 pub mod bsdf;
@@ -20,6 +20,8 @@ pub mod ink;
 pub mod lamp;
 pub mod lamp_units;
 mod late;
+pub mod lobes;
+pub mod matter;
 pub mod medium;
 pub mod microfacet;
 pub mod photometry;

@@ -1,5 +1,5 @@
-//! The study tier: ink as a film of its own, single scattering apart, light through the sheet,
-//! and particles of metal and chalk, all calibrated by the photograph.
+//! The study tier: ink as a film of its own, single scattering apart and light through the sheet,
+//! calibrated by the photograph. Particles and body colour are in [`super::matter`].
 
 use std::{
     f64::consts::{FRAC_1_SQRT_2, PI},
@@ -9,14 +9,12 @@ use std::{
 use glam::{DVec3, DVec4};
 
 use super::{
-    fresnel::fresnel_conductor,
     ink::{Film, beyond_capture, inner_cosine},
-    microfacet::{d_ggx, v_smith},
     quadrature::{chebyshev, gauss_legendre, through},
     refraction::{PathTable, crossed, mean_inner_cosine, steeper_by},
     slab::{Phase, Slab},
     table::{Interface, InterfaceMean, InterfaceTable},
-    tier::{Facing, Surface, albedo_of, brdf_gallery_specular, capture_floor},
+    tier::{Facing, Surface, albedo_of, brdf_gallery_specular},
 };
 
 /// What a side is made of, per linear sRGB channel.
@@ -72,18 +70,6 @@ pub struct Through {
     /// Share of a light table's radiance that bare paper shows on average, for tiers that
     /// know no angles.
     pub flat_share: DVec3,
-}
-
-/// Particles of metal or chalk.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Particle {
-    /// n + ik per channel.
-    pub n: DVec3,
-    /// GGX roughness of what they form.
-    pub alpha: f64,
-    pub k: DVec3,
-    /// Share of a spot that they cover, in [0, 1].
-    pub covered: f64,
 }
 
 /// Directions over a hemisphere: μ, its share of the light that enters, and its path.
@@ -367,10 +353,10 @@ pub struct Ways {
     pub path_o: DVec4,
 }
 
-/// The study tier without the cosine: gallery with the ink's own path, single scattering apart,
-/// and what particles leave of both. `at_i`, `at_o` and `mean` as for
-/// [`brdf_gallery`](super::tier::brdf_gallery); `depth` is τ of the ink times its share of the
-/// spot, `shares` are [`particle_shares`] of the spot. [`brdf_particles`] is to be added.
+/// The study tier without the cosine: gallery with the ink's own path and single scattering
+/// apart. `at_i`, `at_o` and `mean` as for [`brdf_gallery`](super::tier::brdf_gallery); `depth`
+/// is τ of the ink, `paper` the diffuse albedo of paper and ink, and `surface` the share of the
+/// spot with a dielectric surface: 1 but where particles lie (see [`super::matter`]).
 #[expect(
     clippy::too_many_arguments,
     reason = "the shader's twin has no structs to borrow"
@@ -384,8 +370,28 @@ pub fn brdf_study(
     split: &Split,
     depth: DVec3,
     ways: &Ways,
-    particle: &Particle,
-    shares: &Shares,
+    paper: DVec3,
+    surface: f64,
+) -> DVec3 {
+    let gloss = brdf_gallery_specular(s, g, at_i, at_o, mean) * surface;
+    brdf_study_diffuse(s, g, at_i, at_o, mean, split, depth, ways, paper) + DVec3::splat(gloss)
+}
+
+/// The study tier's light from below the surface.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the shader's twin has no structs to borrow"
+)]
+pub fn brdf_study_diffuse(
+    s: &Surface,
+    g: &Facing,
+    at_i: &Interface,
+    at_o: &Interface,
+    mean: &InterfaceMean,
+    split: &Split,
+    depth: DVec3,
+    ways: &Ways,
+    paper: DVec3,
 ) -> DVec3 {
     let (inner_i, inner_o) = (inner_cosine(g.mu_i, s.eta), inner_cosine(g.mu_o, s.eta));
     let q = single_scatter(split, s.eta, g, inner_i, inner_o);
@@ -396,65 +402,7 @@ pub fn brdf_study(
     let shape = split_shape(split, q, g.mu_i, g.mu_o, m_i, m_o);
     let through_ink = beyond_capture(depth, ways.capture, ways.path_i, ways.path_o);
     let coupled = at_i.t * at_o.t * mean.capture;
-    let paper = shares.paper * coupled * through_ink * shape;
-    let gloss = brdf_gallery_specular(s, g, at_i, at_o, mean) * (1.0 - particle.covered);
-    (paper + shares.particles) / PI + DVec3::splat(gloss)
-}
-
-/// The light that a spot's particles mirror, without the cosine.
-pub fn brdf_particles(shares: &Shares, particle: &Particle, g: &Facing) -> DVec3 {
-    shares.gloss * particle_lobe(particle, g)
-}
-
-/// What a spot's photographed albedo is made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Shares {
-    /// Diffuse albedo of the paper between particles, and of the particles.
-    pub paper: DVec3,
-    /// Strength of the particles' lobe, in [0, covered].
-    pub gloss: f64,
-    pub particles: DVec3,
-}
-
-/// Splits the photograph of a spot between paper, `bare` where nothing lies on it, and
-/// particles. Fresh metal reflects more at 45°/0° than a sparse, tarnished stroke photographs:
-/// the photograph bounds its gloss.
-pub fn particle_shares(
-    s: &Surface,
-    mean: &InterfaceMean,
-    bare: DVec3,
-    particle: &Particle,
-) -> Shares {
-    let uncovered = 1.0 - particle.covered;
-    let lit = (s.albedo - capture_floor(s, mean) * uncovered).max(DVec3::ZERO);
-    let paper = lit.min(bare * uncovered);
-    let rest = lit - paper;
-    let mirrored = particle_capture(particle) * particle.covered;
-    let bound = (rest / mirrored.max(DVec3::splat(1e-6))).min_element();
-    let gloss = bound.clamp(0.0, 1.0);
-    Shares {
-        paper,
-        gloss: gloss * particle.covered,
-        particles: (rest - mirrored * gloss).max(DVec3::ZERO),
-    }
-}
-
-/// π times the particles' lobe at 45°/0°.
-pub fn particle_capture(particle: &Particle) -> DVec3 {
-    let g = Facing {
-        mu_i: FRAC_1_SQRT_2,
-        mu_o: 1.0,
-        cos_d: (0.5 + 0.5 * FRAC_1_SQRT_2).sqrt(),
-        sin2_h: 0.5 - 0.5 * FRAC_1_SQRT_2,
-    };
-    PI * particle_lobe(particle, &g)
-}
-
-/// The lobe of full coverage, without the cosine.
-pub fn particle_lobe(particle: &Particle, g: &Facing) -> DVec3 {
-    let facets = d_ggx(g.sin2_h, particle.alpha) * v_smith(g.mu_i, g.mu_o, particle.alpha);
-    let f = |c: usize| fresnel_conductor(g.cos_d, particle.n[c], particle.k[c]);
-    DVec3::new(f(0), f(1), f(2)) * facets
+    paper * coupled * through_ink * shape / PI
 }
 
 /// Both sides of a spot, for light through it.

@@ -27,6 +27,8 @@ use crate::{manifest::exhibit::MAX_OVERLAYS, needs::Terms, optics::tier::Tier};
 
 /// Binding of the profiles of IES lamps.
 const PROFILE_BINDING: u32 = 11;
+/// Binding of the media of the other side.
+const OTHER_MATTER_BINDING: u32 = 12;
 /// Binding of the first overlay.
 const OVERLAY_BINDING: u32 = 16;
 
@@ -47,6 +49,8 @@ pub struct PaperMaps {
     /// Albedo of the other side, for light that comes through it.
     pub other: Option<Handle<Image>>,
     pub overlays: Vec<Handle<Image>>,
+    /// Shares of film, body colour and all particles of the other side.
+    pub other_matter: Option<Handle<Image>>,
     /// Of IES lamps, see [`super::upload::profile_image`].
     pub profiles: Option<Handle<Image>>,
 }
@@ -84,6 +88,7 @@ impl PaperMaterial {
             (8, &maps.matter_more),
             (9, &maps.transmission),
             (10, &maps.other),
+            (OTHER_MATTER_BINDING, &maps.other_matter),
         ];
         let overlays = (0..MAX_OVERLAYS).map(|i| maps.overlays.get(i));
         fixed
@@ -182,6 +187,7 @@ impl AsBindGroup for PaperMaterial {
         let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
         entries.extend(
             (2..=10)
+                .chain([OTHER_MATTER_BINDING])
                 .chain(overlays)
                 .map(|i| map.build(i, ShaderStages::FRAGMENT)),
         );
@@ -265,6 +271,14 @@ impl Material for PaperMaterial {
             ("OVERLAYS", terms.overlays > 0),
             ("MATTER", terms.matter > 0),
             ("MATTER_MORE", terms.matter > 1),
+            ("OTHER_MATTER", terms.other_matter),
+            ("PARTICLES", terms.particles),
+            ("BODY", terms.body),
+            ("MEDIA_INDEX", terms.media_index),
+            ("GLOSS", terms.retro || terms.anisotropic),
+            ("RETRO", terms.retro),
+            ("ANISOTROPIC", terms.anisotropic),
+            ("SHEEN", terms.sheen),
             ("DISPLAY", display),
         ]
         .into_iter()

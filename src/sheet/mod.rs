@@ -25,6 +25,17 @@ pub const PAPER_BASELINES_MODULE: &str = concat!(
     include_str!("../../shaders/paper_baselines.wgsl")
 );
 
+/// Media on the paper and optional lobes, which are read behind the physics.
+pub const PAPER_MEDIA: &str = include_str!("../../shaders/paper_media.wgsl");
+/// The same as a module of its own.
+pub const PAPER_MEDIA_MODULE: &str = concat!(
+    "#import \"embedded://recto/paper_bsdf.wgsl\"::{PI, INV_PI, ALPHA_MIN, LENGTH_MIN, \
+     CAPTURE_SIN2_H, FRAC_1_SQRT_2, Facing, Interface, InterfaceMean, Surface, capture_floor, \
+     d_ggx, d_ggx_anisotropic, fresnel_conductor, fresnel_dielectric, v_smith, \
+     v_smith_anisotropic}\n",
+    include_str!("../../shaders/paper_media.wgsl")
+);
+
 /// Registers the shaders and the sheet's material.
 pub struct SheetPlugin;
 
@@ -34,6 +45,7 @@ impl Plugin for SheetPlugin {
         for (path, text) in [
             ("recto/paper_bsdf.wgsl", PAPER_BSDF),
             ("recto/paper_baselines.wgsl", PAPER_BASELINES_MODULE),
+            ("recto/paper_media.wgsl", PAPER_MEDIA_MODULE),
             ("recto/paper_material.wgsl", PAPER_MATERIAL),
         ] {
             registry.insert_asset(path.into(), Path::new(path), text.as_bytes());

@@ -1,23 +1,24 @@
 //! The only narrowing from f64 to f32: a side's constants, lamps and places as the shader
 //! reads them. Names and order are those of `paper_material.wgsl` and `paper_bsdf.wgsl`.
 
+mod media;
+
 use bevy::render::render_resource::ShaderType;
 use glam::{DAffine2, DMat4, DQuat, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 
 use crate::{
     manifest::exhibit::{HeightMap, MAX_LAMPS, MAX_OVERLAYS},
-    maps::{Coding, MAX_PARTICLES},
+    maps::Coding,
     optics::{
         ink::{FILM_TERMS, Film},
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
-        medium::ParticleConstants,
-        microfacet::ALPHA_MIN,
         quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
         refraction::{PATH_ALPHA, PATH_MU},
         study::{Split, Study, Through},
         table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
     },
 };
+pub use media::{MediaUniform, ParticleUniform};
 
 /// Cosine below every cosine: a lamp without a beam shines fully everywhere.
 const NO_BEAM: f32 = -2.0;
@@ -164,30 +165,6 @@ impl MapPlace {
     }
 }
 
-/// Twin of `ParticleSlot`.
-#[derive(Clone, Copy, Debug, Default, ShaderType)]
-pub struct ParticleUniform {
-    pub n: Vec3,
-    pub alpha: f32,
-    pub k: Vec3,
-    pub spare: f32,
-    pub albedo: Vec3,
-}
-
-impl ParticleUniform {
-    /// Narrows `particles`, with the roughness floored.
-    pub fn new(particles: &ParticleConstants) -> Self {
-        let narrow = |values: [f64; 3]| DVec3::from_array(values).as_vec3();
-        Self {
-            n: narrow(particles.n),
-            alpha: particles.roughness.max(ALPHA_MIN) as f32,
-            k: narrow(particles.k),
-            spare: 0.0,
-            albedo: narrow(particles.albedo),
-        }
-    }
-}
-
 /// Twin of `InterfaceTable`.
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
 pub struct InterfaceUniform {
@@ -318,7 +295,7 @@ pub struct PaperUniform {
     pub normal_place: MapPlace,
     pub roughness_place: MapPlace,
     pub matter_place: MapPlace,
-    pub particles: [ParticleUniform; MAX_PARTICLES],
+    pub media: MediaUniform,
     pub outline_place: MapPlace,
     pub level: Vec4,
     pub light_table: Vec3,
@@ -336,6 +313,7 @@ pub struct PaperUniform {
     pub other_bare: Vec3,
     pub clear_scale: f32,
     pub other_place: MapPlace,
+    pub other_matter_place: MapPlace,
     pub transmission_place: MapPlace,
     pub height_place: MapPlace,
     pub height_range: Vec2,

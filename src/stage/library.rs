@@ -280,7 +280,9 @@ fn load(map: &MapUse) -> Result<Pyramid, MapError> {
         MapUse::RoughnessOfMatter(stack, paper) => {
             maps::load_roughness_of_matter(&stack.layers, *paper)
         }
-        MapUse::Matter(stack) => maps::load_matter(&stack.layers, MatterPart::First),
+        MapUse::Matter(stack) | MapUse::OtherMatter(stack) => {
+            maps::load_matter(&stack.layers, MatterPart::First)
+        }
         MapUse::MatterMore(stack) => maps::load_matter(&stack.layers, MatterPart::More),
         MapUse::Outline(_) => maps::load_outline(path),
         MapUse::Transmission(_) | MapUse::Height(_) => maps::load_height(path),

@@ -1,6 +1,6 @@
 //! The sides of the sheet as entities.
 
-use std::sync::Arc;
+use std::{f64::consts::FRAC_PI_8, sync::Arc};
 
 use bevy::{camera::visibility::NoFrustumCulling, ecs::system::SystemParam, prelude::*};
 use glam::{DMat4, DQuat, DVec3};
@@ -16,7 +16,9 @@ use crate::{
     },
     needs::{MapUse, Needs, SideNeeds},
     optics::{
-        fresnel::normal_reflectance,
+        fresnel::{fresnel_dielectric, normal_reflectance},
+        lobes::{albedo_under_sheen, alpha_towards, combed_capture, stretch},
+        matter::Media,
         microfacet::ALPHA_MIN,
         photometry::Photometry,
         refraction::PathTable,
@@ -28,7 +30,7 @@ use crate::{
     sheet::{
         PaperMaps, PaperMaterial,
         mesh::SideSurface,
-        uniform::{InterfaceUniform, MapPlace, PaperUniform, ParticleUniform},
+        uniform::{InterfaceUniform, MapPlace, MediaUniform, PaperUniform},
         upload::profile_image,
     },
 };
@@ -213,12 +215,18 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
     };
     let surface = |bare: [f64; 3]| {
         let specular = f64::from(uniform.specular);
-        tier::Surface::new(
-            DVec3::from_array(bare),
+        let bare = DVec3::from_array(bare);
+        let sheen = if side.terms.sheen { paper.sheen } else { 0.0 };
+        let mut surface = tier::Surface::new(
+            albedo_under_sheen(sheen, bare),
             paper.roughness,
             paper.index,
             specular,
-        )
+        );
+        if side.terms.anisotropic {
+            surface.f_capture *= combed_capture(surface.alpha, stretch(paper.anisotropy));
+        }
+        surface
     };
     // What bare paper shows on the side that is seen, and on the other.
     let mut bare = [BARE_PAPER.map(f64::from); 2];
@@ -230,16 +238,25 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
         }
     }
     let [seen, other] = bare.map(|of_picture| surface(paper.albedo.unwrap_or(of_picture)));
-    uniform.f_capture = seen.f_capture as f32;
+    // Per texel, what combs the gloss is known only there.
+    uniform.f_capture = fresnel_dielectric(FRAC_PI_8.cos(), paper.index) as f32;
     uniform.lit_bare = seen.albedo.as_vec3();
     uniform.other_bare = other.albedo.as_vec3();
     let varies = side.terms.roughness_map || side.terms.normal_map;
+    // What combed facets reflect all together is that of even ones a little rougher.
+    let combed = if side.terms.anisotropic {
+        stretch(paper.anisotropy)
+    } else {
+        1.0
+    };
+    let alpha = alpha_towards(paper.roughness, combed, DVec3::Z);
+    let here = || InterfaceTable::at_roughness(alpha, paper.index, paper.specular);
     if side.terms.tier.is_coupled() {
-        let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
-        let mean = here.mean_at(paper.roughness);
+        let here = here();
+        let mean = here.mean_at(alpha);
         let lit = |of: &tier::Surface| albedo_of(of, &mean).max(DVec3::splat(1e-3)).as_vec3();
         (uniform.lit_bare, uniform.other_bare) = (lit(&seen), lit(&other));
-        let table = if varies {
+        let table = if varies || side.terms.anisotropic {
             InterfaceTable::new(paper.index, paper.specular)
         } else {
             here
@@ -247,16 +264,26 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
         uniform.interface_table = InterfaceUniform::new(&table);
     }
     if side.terms.tier == Tier::Study || side.terms.transmission {
-        let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
-        let paths = if varies {
-            PathTable::new(paper.index)
+        let here = here();
+        let mean = here.mean_at(alpha);
+        let eta = if side.terms.media_index {
+            side.media.film_index(paper.index)
         } else {
-            Arc::new(PathTable::at_roughness(paper.roughness, paper.index))
+            paper.index
         };
-        uniform.set_study(&Study::new(&seen, &here, paths, slab(paper)));
-    }
-    for (slot, particle) in uniform.particles.iter_mut().zip(&side.particles) {
-        *slot = ParticleUniform::new(particle);
+        let paths = if varies {
+            PathTable::new(eta)
+        } else {
+            Arc::new(PathTable::at_roughness(paper.roughness, eta))
+        };
+        let mut study = Study::new(&seen, &here, paths, slab(paper));
+        let media = Media::new(&side.media, &seen, &mean, &study);
+        let on_other = Media::new(&side.other_media, &seen, &mean, &study);
+        if side.terms.media_index {
+            study = media.with_films(&seen, &mean, study);
+        }
+        uniform.set_study(&study);
+        uniform.media = MediaUniform::new(&media, &on_other, paper, side.side);
     }
     // With shared coordinates, the vertex shader reads the albedo's place for every map.
     if let Some(first) = side.maps.first() {
@@ -278,6 +305,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
             MapUse::Outline(_) => uniform.outline_place = MapPlace::new(uv_from_side),
             MapUse::Height(height) => uniform.set_height(height),
             MapUse::OtherAlbedo(_) => uniform.other_place = MapPlace::new(uv_from_side),
+            MapUse::OtherMatter(_) => uniform.other_matter_place = MapPlace::new(uv_from_side),
             MapUse::Transmission(_) => {
                 uniform.transmission_place = MapPlace::new(uv_from_side);
                 uniform.clear_scale = (1.0 / facts.mean.max(1e-3)) as f32;
@@ -314,6 +342,7 @@ fn bound(side: &SideNeeds, images: Vec<Handle<Image>>) -> PaperMaps {
             MapUse::Height(_) => maps.height = Some(image),
             MapUse::Transmission(_) => maps.transmission = Some(image),
             MapUse::OtherAlbedo(_) => maps.other = Some(image),
+            MapUse::OtherMatter(_) => maps.other_matter = Some(image),
             MapUse::Overlay(_) => maps.overlays.push(image),
         }
     }

@@ -279,10 +279,8 @@ fn what_is_not_shown_yet_is_named() {
     assert_eq!(
         read(FULL).not_shown_yet,
         [
-            "Drawing \"landscape\": media maps do not change the picture yet.",
             "Drawing \"landscape\": chain_lines_mm of the paper does not change the picture yet.",
             "Drawing \"landscape\": hotspots are not shown yet.",
-            "Drawing \"figure\": media maps do not change the picture yet.",
             "Scene \"restoration\": comparisons (curtain) are not shown yet.",
             "Tour \"attract\": tours do not run yet.",
         ]

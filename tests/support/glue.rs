@@ -7,7 +7,7 @@ use bevy::{
     render::render_resource::WgpuFeatures,
     shader::{Shader, ShaderCache, ShaderCacheSource, ShaderDefVal},
 };
-use recto::sheet::{PAPER_BASELINES_MODULE, PAPER_BSDF, PAPER_MATERIAL};
+use recto::sheet::{PAPER_BASELINES_MODULE, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA_MODULE};
 
 const PHYSICS: AssetId<Shader> = AssetId::Uuid {
     uuid: Uuid::from_u128(1),
@@ -17,6 +17,9 @@ const GLUE: AssetId<Shader> = AssetId::Uuid {
 };
 const BASELINES: AssetId<Shader> = AssetId::Uuid {
     uuid: Uuid::from_u128(3),
+};
+const MEDIA: AssetId<Shader> = AssetId::Uuid {
+    uuid: Uuid::from_u128(4),
 };
 /// The bind group that Bevy gives to materials.
 const MATERIAL_BIND_GROUP: u32 = bevy::pbr::MATERIAL_BIND_GROUP_INDEX as u32;
@@ -43,6 +46,7 @@ impl Composer {
                 PAPER_BASELINES_MODULE.to_owned(),
                 "paper_baselines",
             ),
+            (MEDIA, PAPER_MEDIA_MODULE.to_owned(), "paper_media"),
             (GLUE, glue, "paper_material"),
         ] {
             let path = format!("embedded://recto/{name}.wgsl");

@@ -44,13 +44,13 @@ record! {
             thickness_um: LayerUm,
             /// Colour at full coverage as photographed: papers, particles and body colours.
             albedo: RawAlbedo,
-            /// Strength of a paper's retro-reflection, 0 (off) to 1.
+            /// Share of a paper's gloss that goes back to the lamp, 0 (off) to 1.
             retro: Fraction,
             /// Strength of a paper's sheen, 0 (off) to 1.
             sheen: Fraction,
             /// How much more a paper's gloss spreads one way than across it, 0 to 1.
             anisotropy: Fraction,
-            /// The way it spreads more, in degrees anticlockwise from the right.
+            /// The way it spreads more, in degrees anticlockwise from the right as the recto is seen.
             anisotropy_deg: TurnDeg,
             /// Optical depths of inks for red, green and blue at full strength.
             depth: [OpticalDepth; 3],

@@ -153,13 +153,14 @@ record! {
             g_forward: ForwardCosine,
             /// Mean cosine of what is scattered backwards. Without it: the catalogue's.
             g_backward: BackwardCosine,
-            /// Strength of the retro-reflection, 0 (off) to 1. Without it: 0.
+            /// Share of the gloss that goes back to the lamp, 0 (off) to 1. Without it: 0.
             retro: Fraction,
             /// Strength of the sheen, 0 (off) to 1. Without it: 0.
             sheen: Fraction,
             /// How much more the gloss spreads one way than across it, 0 to 1. Without it: 0.
             anisotropy: Fraction,
-            /// The way it spreads more, in degrees anticlockwise from the right. Without it: 0.
+            /// The way it spreads more, in degrees anticlockwise from the right as the recto is
+            /// seen. Without it: 0.
             anisotropy_deg: TurnDeg,
             /// Where these constants come from. Without it: assumed.
             source: Source,

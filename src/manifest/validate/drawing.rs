@@ -49,17 +49,6 @@ impl Validator<'_, '_> {
             let trail = trail.key("transmission").key("map");
             self.covering_map(&Named::plain(&transmission.map, &trail), size_mm)
         });
-        let states = raw.state.iter().flat_map(List::iter);
-        let mut sides = states
-            .flat_map(|(_, state)| [&state.recto, &state.verso])
-            .flatten()
-            .chain([&raw.recto.0])
-            .chain(raw.verso.as_ref().map(|verso| &verso.0));
-        if sides.any(|side| side.media.is_some()) {
-            self.not_shown_yet(format!(
-                "Drawing \"{id}\": media maps do not change the picture yet."
-            ));
-        }
         if let Some(Brief::Full(paper)) = &raw.paper
             && paper.chain_lines_mm.is_some()
         {
