@@ -17,7 +17,7 @@
     Cover, Particle,
     albedo_under_sheen, alpha_towards, brdf_body, brdf_gloss, brdf_sheen, combed_capture, gloss_lobe,
     gloss_lobe_anisotropic, interface_of, mean_of, particle_capture, particle_gloss, particle_lobe,
-    passing, shares_of, sheen_albedo, turned, uncovered_share, under_sheen,
+    passing, shares_of, sheen_albedo, turned, uncovered_share, under_sheen, veiled,
 }
 
 #ifdef RELIEF_SHADOWS
@@ -655,10 +655,19 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef SHEEN
     baked *= 1.0 - sheen * sheen_albedo(max(dot(n, v), MU_MIN));
 #endif
+#ifdef BODY
+    let depth_f = veiled(cover, paper.media.body_through, darkness);
+#else
+    let depth_f = darkness;
+#endif
+    var depth_b = optical_depth(paper.film, capture, share_b);
+#ifdef OTHER_MATTER
+    depth_b = veiled(other_cover, paper.media.other_body_through, depth_b);
+#endif
     let seen = Seen(
-        darkness,
+        depth_f,
         clear,
-        optical_depth(paper.film, capture, share_b),
+        depth_b,
         internal_reflectance(paper.film, share_f),
         internal_reflectance(paper.film, share_b),
     );

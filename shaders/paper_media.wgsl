@@ -54,7 +54,8 @@ fn shares_of(
 }
 
 fn uncovered_share(shares: Shares, bare: vec3<f32>) -> vec3<f32> {
-    return shares.paper / (bare * max(shares.uncovered, SHARE_LEAST));
+    let missing = max(SHARE_LEAST - shares.uncovered, 0.0);
+    return (shares.paper + bare * missing) / (bare * max(shares.uncovered, SHARE_LEAST));
 }
 
 fn particle_capture(particle: Particle, alpha: f32) -> vec3<f32> {
@@ -86,6 +87,13 @@ fn brdf_body(
 fn passing(cover: Cover, body_through: vec3<f32>) -> vec3<f32> {
     let uncovered = max(1.0 - cover.particles - cover.body, 0.0);
     return uncovered + body_through * cover.body;
+}
+
+fn veiled(cover: Cover, body_through: vec3<f32>, depth: vec3<f32>) -> vec3<f32> {
+    let uncovered = max(1.0 - cover.particles - cover.body, 0.0);
+    let hidden = body_through * cover.body + 1e-6;
+    let passes = uncovered * exp(-depth) + hidden;
+    return max(-log(passes / (uncovered + hidden)), vec3(0.0));
 }
 
 fn interface_of(at: Interface, reflects: f32) -> Interface {

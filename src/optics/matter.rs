@@ -118,9 +118,11 @@ pub fn shares_of(
     }
 }
 
-/// Photographed share of the bare paper's diffuse albedo, of what is not covered.
+/// Photographed share of the bare paper's diffuse albedo, of what is not covered; that of bare
+/// paper where everything is.
 pub fn uncovered_share(shares: &Shares, bare: DVec3) -> DVec3 {
-    shares.paper / (bare * shares.uncovered.max(SHARE_LEAST))
+    let missing = (SHARE_LEAST - shares.uncovered).max(0.0);
+    (shares.paper + bare * missing) / (bare * shares.uncovered.max(SHARE_LEAST))
 }
 
 /// π times the lobe of full coverage at 45°/0°.
@@ -159,6 +161,15 @@ pub fn brdf_body(body: DVec3, at_i: &Interface, at_o: &Interface, mean: &Interfa
 pub fn passing(cover: &Cover, body_through: DVec3) -> DVec3 {
     let uncovered = (1.0 - cover.particles - cover.body).max(0.0);
     uncovered + body_through * cover.body
+}
+
+/// τ of an even film through which, along the normal, as much light passes as through ink of
+/// `depth` beside body colour, which has none: [`passing`] is to be multiplied.
+pub fn veiled(cover: &Cover, body_through: DVec3, depth: DVec3) -> DVec3 {
+    let uncovered = (1.0 - cover.particles - cover.body).max(0.0);
+    let hidden = body_through * cover.body + 1e-6;
+    let passes = uncovered * (-depth).exp() + hidden;
+    (-(passes / (uncovered + hidden)).map(f64::ln)).max(DVec3::ZERO)
 }
 
 /// An interface that reflects `reflects` times as much as the tabulated one, for another index.

@@ -8,7 +8,7 @@ use recto::{
         },
         matter::{
             Cover, Particle, Shares, brdf_body, interface_of, mean_of, particle_capture,
-            particle_gloss, particle_lobe, passing, shares_of, uncovered_share,
+            particle_gloss, particle_lobe, passing, shares_of, uncovered_share, veiled,
         },
     },
     sheet::PAPER_MEDIA,
@@ -101,8 +101,10 @@ fn divided() -> Twins {
         "shares.body",
         "cover.grains * shares.scale",
         "shares.lit",
+        // From here on of what is hardly anything, by its share.
         "max(uncovered_share(shares, bare) * bare * max(shares.uncovered, SHARE_LEAST), vec3(0.0))",
         "passing(cover, body)",
+        "veiled(cover, body, bare)",
     ];
     Twins {
         name: "a spot's photograph, divided",
@@ -133,6 +135,7 @@ fn divided() -> Twins {
                     shares.lit,
                     of_open.max(DVec3::ZERO),
                     passing(&cover, colour(x, 6)),
+                    veiled(&cover, colour(x, 6), bare),
                 ],
                 &[shares.surface, shares.uncovered],
             )
@@ -146,7 +149,13 @@ fn divided() -> Twins {
 fn rounding_of_albedos(x: &[f64]) -> f64 {
     let (s, mean, ..) = spot(x);
     let terms = s.albedo.max_element() + capture_floor(&s, &mean) + 1.0;
-    4.0 * terms * UNIT_PRODUCT
+    // What is left uncovered is rounded too, and told from what is covered.
+    let cover = &x[12..15];
+    let covered = colour(x, 6) * cover[1] + colour(x, 9);
+    let open = (1.0 - cover[1] - cover[2]).max(0.0);
+    let expected = covered + colour(x, 3) * open;
+    let told = (colour(x, 3) / expected.max(DVec3::splat(1e-6))).max_element();
+    4.0 * terms * UNIT_PRODUCT * (1.0 + told)
 }
 
 fn particles() -> Twins {
@@ -451,7 +460,19 @@ fn lobes_that_are_off_by_default() {
 fn broken_media_are_found() {
     let gpu = Gpu::new();
     type Rounding = fn(&[f64]) -> f64;
-    let tests: [(Twins, Rounding, &str, &str); 8] = [
+    let tests: [(Twins, Rounding, &str, &str); 10] = [
+        (
+            particles(),
+            |_| 0.0,
+            "let q = 2.0 * n * k;",
+            "let q = n * k;",
+        ),
+        (
+            divided(),
+            rounding_of_albedos,
+            "uncovered * exp(-depth)",
+            "uncovered",
+        ),
         (divided(), rounding_of_albedos, "* cover.film;", "* 1.0;"),
         (
             divided(),
@@ -497,8 +518,9 @@ fn broken_media_are_found() {
         ),
     ];
     for (twins, rounding, sound, wrong) in tests {
-        assert!(PAPER_MEDIA.contains(sound), "{sound} is not in the shader");
-        let physics = physics().replace(sound, wrong);
+        let shipped = physics();
+        assert!(shipped.contains(sound), "{sound} is not in the shader");
+        let physics = shipped.replace(sound, wrong);
         let outcome = twins.compare_rounded(&gpu, &physics, rounding);
         assert!(outcome.is_err(), "{wrong} passed: {outcome:?}");
     }

@@ -385,7 +385,6 @@ fn a_broken_study_is_found() {
         ),
         ("- t * t * rho_f * rho_b", "+ t * t * rho_f * rho_b"),
         ("(1.0 - g * g) / (d * sqrt(d))", "(1.0 - g * g) / d"),
-        ("let q = 2.0 * n * k;", "let q = n * k;"),
     ] {
         let physics = broken(sound, wrong);
         let outcome = compare_study(&gpu, &physics, 0);

@@ -14,6 +14,7 @@ use recto::{
         matter::{
             Cover, Media, Shares, SideMedia, brdf_body, interface_of, layer_of_pigment, mean_of,
             particle_capture, particle_gloss, particle_lobe, passing, shares_of, uncovered_share,
+            veiled,
         },
         medium::{Matter, MediumId},
         refraction::PathTable,
@@ -455,4 +456,24 @@ fn a_clear_film_on_paper_is_no_ink() {
     assert!((near.film_gain - 1.0).abs().max_element() < 1e-12);
     assert!(near.film_reflects == 1.0 && near.body_through == DVec3::ZERO);
     assert!(side.media.particles.len() == 5);
+}
+
+#[test]
+fn ink_beside_gouache_darkens_only_what_it_covers() {
+    let through = DVec3::splat(0.25);
+    let depth = DVec3::splat(2.0);
+    let cover = |body: f64, particles: f64| Cover {
+        body,
+        particles,
+        ..Cover::default()
+    };
+    let all = |cover: &Cover| passing(cover, through) * (-veiled(cover, through, depth)).exp();
+    let half = all(&cover(0.5, 0.0)).x;
+    assert!(
+        (half - (0.5 * (-2.0_f64).exp() + 0.5 * 0.25)).abs() < 1e-5,
+        "{half}"
+    );
+    assert!((all(&cover(1.0, 0.0)).x - 0.25).abs() < 1e-5);
+    assert!((all(&cover(0.0, 0.0)).x - (-2.0_f64).exp()).abs() < 1e-5);
+    assert_eq!(all(&cover(0.0, 1.0)), DVec3::ZERO);
 }
