@@ -10,6 +10,8 @@ mod measured;
 #[path = "support/rgl.rs"]
 mod rgl;
 mod support;
+#[path = "judged/traps.rs"]
+mod traps;
 
 use std::{
     collections::HashMap,

@@ -29,8 +29,12 @@ use recto::{
 
 #[path = "parity/baselines.rs"]
 mod baselines;
+#[path = "parity/extremes.rs"]
+mod extremes;
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "parity/guards.rs"]
+mod guards;
 #[path = "parity/interfaces.rs"]
 mod interfaces;
 #[path = "parity/lamps.rs"]
@@ -40,7 +44,7 @@ mod relief;
 #[path = "parity/study.rs"]
 mod study;
 
-use gpu::{Gpu, entry};
+use gpu::{Gpu, bsdf, entry};
 use lamps::{Lamps, compare_lamps};
 
 /// Some thousand f32 roundings: room for any driver's division and square root.
@@ -250,8 +254,9 @@ fn alphas() -> Vec<f32> {
 }
 
 fn fresnel() -> Twins {
-    // η − 1 evenly spaced, and 1 itself: no interface at all.
+    // η − 1 evenly spaced, and 1 itself: no interface at all; then the same from inside.
     let mut etas: Vec<f32> = log_spaced(1e-6, 2.0, 60).iter().map(|x| 1.0 + x).collect();
+    etas.extend(etas.clone().iter().map(|eta| 1.0 / eta));
     etas.push(1.0);
     // Cosines near 1 as well as near 0, and both ends.
     let mut cosines = cosines();
@@ -435,15 +440,14 @@ fn albedo_rounding(name: &str) -> impl Fn(&[f64]) -> f64 + use<> {
     }
 }
 
-#[test]
-fn functions_of_numbers() {
-    let gpu = Gpu::new();
+/// Functions of numbers.
+fn judge_numbers(gpu: &Gpu) {
     for twins in [fresnel(), schlick(), distribution(), visibility()]
         .into_iter()
         .chain(brdfs())
     {
         let rounding = albedo_rounding(twins.name);
-        twins.compare_rounded(&gpu, PAPER_BSDF, rounding).unwrap();
+        twins.compare_rounded(gpu, bsdf(), rounding).unwrap();
     }
 }
 
@@ -535,49 +539,61 @@ fn compare_facing(gpu: &Gpu, physics: &str) -> Result<f64, String> {
     Ok(worst)
 }
 
-#[test]
-fn directions() {
-    compare_facing(&Gpu::new(), PAPER_BSDF).unwrap();
-}
-
-#[test]
-fn light_may_go_either_way() {
-    let gpu = Gpu::new();
-    let [_, draft, gallery] = brdfs();
-    // The same surface with light and eye exchanged.
-    let exchange = "let f = {f};
-        let back = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h); let f_back = {b};
-        found[to] = f.x; found[to + 1u] = f_back.x;";
-    for (name, there, back) in [
-        ("draft", "brdf_draft(s, g)", "brdf_draft(s, back)"),
+/// The tiers of plain surfaces that claim to be reciprocal, with light and eye exchanged; study
+/// is judged with its own inputs.
+fn judge_reciprocity(gpu: &Gpu, physics: &str) -> Result<f64, String> {
+    // In place of a table, how far the eye is from the mirrored light: symmetric in both.
+    let off = "given[at + 11u]";
+    let calls = [
+        ("brdf_draft(s, g)", "brdf_draft(s, back)"),
         (
-            "gallery",
             "brdf_gallery(s, g, at_i, at_o, mean)",
             "brdf_gallery(s, back, at_o, at_i, mean)",
         ),
-    ] {
-        let cases = if name == "draft" {
-            &draft.cases
-        } else {
-            &gallery.cases
-        };
-        let exchange = exchange.replace("{f}", there).replace("{b}", back);
-        let arity = cases[0].len();
-        let body = format!("let at = index * {arity}u; {BRDF_INPUTS} {exchange}");
-        let text = format!("{PAPER_BSDF}\n{}", entry("f32", cases.len(), 2, &body));
-        let found = gpu.run(&text, &cases.concat(), cases.len(), 2);
-        let pairs: Vec<Pair> = found
-            .chunks(2)
-            .map(|both| Pair::new(both[0], f64::from(both[1]), RECIPROCITY))
-            .collect();
-        judge(&format!("reciprocity of {name}"), &pairs, |i| {
-            format!("{:?}", cases[i])
+        ("brdf_blinn_phong(s, g)", "brdf_blinn_phong(s, back)"),
+        ("brdf_cook_torrance(s, g)", "brdf_cook_torrance(s, back)"),
+        (
+            "brdf_cook_torrance_gauss(s, g)",
+            "brdf_cook_torrance_gauss(s, back)",
+        ),
+        (
+            "brdf_cook_torrance_blinn(s, g)",
+            "brdf_cook_torrance_blinn(s, back)",
+        ),
+        ("brdf_oren_nayar(s, g)", "brdf_oren_nayar(s, back)"),
+        ("brdf_isle(s, g)", "brdf_isle(s, back)"),
+        (
+            &format!("brdf_phong(s, {off})"),
+            &format!("brdf_phong(s, {off})"),
+        ),
+    ];
+    let both: String = (0..calls.len())
+        .map(|k| {
+            let ((there, back), to) = (calls[k], 2 * k);
+            format!(
+                "{{ let f = {there}; let f_back = {back};
+                found[to + {to}u] = f.y; found[to + {to}u + 1u] = f_back.y; }}"
+            )
         })
-        .unwrap();
-    }
+        .collect();
+    let cases = brdf_cases();
+    let (arity, outputs) = (cases[0].len(), 2 * calls.len());
+    let body = format!(
+        "let at = index * {arity}u; {BRDF_INPUTS}
+        let back = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h); {both}"
+    );
+    let text = format!("{physics}\n{}", entry("f32", cases.len(), outputs, &body));
+    let found = gpu.run(&text, &cases.concat(), cases.len(), outputs);
+    let pairs: Vec<Pair> = found
+        .chunks(2)
+        .map(|both| Pair::new(both[0], f64::from(both[1]), RECIPROCITY))
+        .collect();
+    judge("reciprocity", &pairs, |i| {
+        format!("{}, {:?}", calls[i % calls.len()].0, cases[i / calls.len()])
+    })
 }
 
-/// The physics with one line of it broken.
+/// The shipped physics with one line of it broken.
 fn broken(sound: &str, wrong: &str) -> String {
     assert!(PAPER_BSDF.contains(sound), "{sound} is not in the shader");
     PAPER_BSDF.replace(sound, wrong)
@@ -609,6 +625,7 @@ fn a_broken_shader_is_found() {
         compare_lamps(&gpu, &floor, Lamps::Rectangle),
         distribution().compare(&gpu, &facets),
         gallery.compare(&gpu, &coupling),
+        judge_reciprocity(&gpu, &format!("{coupling}\n{}", gpu::baselines())),
     ] {
         assert!(outcome.is_err(), "a broken shader passed: {outcome:?}");
     }

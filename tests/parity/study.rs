@@ -17,9 +17,13 @@ use recto::{
     sheet::uniform::{FilmUniform, SplitUniform, ThroughUniform},
 };
 
-fn conductors() -> Twins {
+pub fn conductors() -> Twins {
     let seeded = Seeded::new(11);
-    let n = || seeded.log(1e-2, 6.0);
+    // Air as well.
+    let n = || match seeded.bits() % 8 {
+        0 => 1.0,
+        _ => seeded.log(1e-2, 6.0),
+    };
     let k = || seeded.log_or_zero(1e-4, 20.0);
     Twins {
         name: "fresnel_conductor",
@@ -38,7 +42,7 @@ fn conductors() -> Twins {
     }
 }
 
-fn anisotropic() -> Twins {
+pub fn anisotropic() -> Twins {
     let seeded = Seeded::new(12);
     Twins {
         name: "anisotropic facets",
@@ -66,13 +70,12 @@ fn anisotropic() -> Twins {
     }
 }
 
-#[test]
-fn facets_of_metal_and_of_combed_paper() {
-    let gpu = Gpu::new();
-    conductors().compare(&gpu, PAPER_BSDF).unwrap();
+/// Facets of metal and of combed paper.
+pub fn judge_facets(gpu: &Gpu) {
+    conductors().compare(gpu, bsdf()).unwrap();
     // 1 − x² − y² of a half vector cancels towards grazing, as in f64 only later.
     anisotropic()
-        .compare_rounded(&gpu, PAPER_BSDF, |x| {
+        .compare_rounded(gpu, bsdf(), |x| {
             let d = d_ggx_anisotropic(x[0], x[1], x[6], x[7]);
             let grazing = (x[0] / x[6]).hypot(x[1] / x[7]).powi(2).max(1e-6);
             4.0 * d * UNIT_PRODUCT / grazing
@@ -158,6 +161,7 @@ fn papers() -> Vec<(String, Surface, InterfaceMean, Study)> {
 const NUMBERS: usize = 39;
 /// Where a case's paths begin.
 const PATHS: usize = 27;
+const OUTPUTS: usize = 18;
 
 fn spots(paper: &Surface, study: &Study) -> Vec<Vec<f32>> {
     let seeded = Seeded::new(13);
@@ -316,7 +320,7 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
 }
 
 /// Compares the study tier with `physics`, for the paper of this number.
-fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String> {
+pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String> {
     let (name, paper, mean, study) = papers().swap_remove(number);
     let (film, constants) = constants(&study);
     let cases = spots(&paper, &study);
@@ -349,7 +353,14 @@ fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String>
         found[to] = a.x; found[to + 1u] = a.y; found[to + 2u] = a.z;
         found[to + 3u] = b.x; found[to + 4u] = b.y; found[to + 5u] = b.z;
         found[to + 6u] = c.x; found[to + 7u] = c.y; found[to + 8u] = c.z;
-        found[to + 9u] = d.x; found[to + 10u] = d.y; found[to + 11u] = d.z;",
+        found[to + 9u] = d.x; found[to + 10u] = d.y; found[to + 11u] = d.z;
+        // Light and eye exchanged, and the sheet turned over with them.
+        let back = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h);
+        let turned = Seen(seen.depth_b, seen.clear, seen.depth_f, seen.rho_b, seen.rho_f);
+        let e = brdf_study(s, back, at_o, at_i, mean, split, depth, particle, shares);
+        let h = btdf_study(through, turned, back, at_o, at_i, s.eta);
+        found[to + 12u] = e.x; found[to + 13u] = e.y; found[to + 14u] = e.z;
+        found[to + 15u] = h.x; found[to + 16u] = h.y; found[to + 17u] = h.z;",
         film.len(),
         literal(paper.alpha),
         literal(paper.eta),
@@ -360,11 +371,11 @@ fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String>
         literal(mean.capture),
         literal(mean.floor),
     );
-    let text = format!("{physics}\n{}", entry("f32", cases.len(), 12, &body));
+    let text = format!("{physics}\n{}", entry("f32", cases.len(), OUTPUTS, &body));
     let given = [film, cases.concat()].concat();
-    let found = gpu.run(&text, &given, cases.len(), 12);
-    let mut pairs = Vec::new();
-    for (case, found) in cases.iter().zip(found.chunks(12)) {
+    let found = gpu.run(&text, &given, cases.len(), OUTPUTS);
+    let (mut pairs, mut ways) = (Vec::new(), Vec::new());
+    for (case, found) in cases.iter().zip(found.chunks(OUTPUTS)) {
         let x = widen(case);
         let expected = spot(&x, &paper, &mean, &study);
         let terms =
@@ -380,16 +391,23 @@ fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String>
                 .max(-study.split.phase.g_backward);
         let peak = 3.0 * UNIT_PRODUCT / (narrow * narrow);
         let lobe = particle_lobe_over_capture(&x) * terms * UNIT_PRODUCT;
-        for (k, &gpu) in found.iter().enumerate() {
+        for (there, back) in (0..3).chain(9..12).zip(12..OUTPUTS) {
+            ways.push(Pair::new(found[back], found[there].into(), RECIPROCITY));
+        }
+        for (k, &gpu) in found[..12].iter().enumerate() {
             let mut pair = Pair::new(gpu, expected[k / 3][k % 3], RELATIVE);
             let diffuse = diffuse + peak * pair.cpu;
             pair.allowed += [diffuse, lobe, 0.0, 0.0][k / 3];
             pairs.push(pair);
         }
     }
-    judge(&name, &pairs, |i| {
+    let either = judge(&format!("{name}: exchanged"), &ways, |i| {
+        format!("{:?}, output {}", cases[i / 6], i % 6)
+    })?;
+    let alike = judge(&name, &pairs, |i| {
         format!("{:?}, output {}", cases[i / 12], i % 12)
-    })
+    })?;
+    Ok(either.max(alike))
 }
 
 /// How much light the particles' lobe gives for each unit of albedo that they mirror.
@@ -405,11 +423,10 @@ fn particle_lobe_over_capture(x: &[f64]) -> f64 {
     facets * brightest / (captured * darkest).max(1e-6)
 }
 
-#[test]
-fn ink_and_light_through_the_sheet() {
-    let gpu = Gpu::new();
+/// Ink and light through the sheet.
+pub fn judge_study(gpu: &Gpu) {
     for number in 0..papers().len() {
-        compare_study(&gpu, PAPER_BSDF, number).unwrap();
+        compare_study(gpu, bsdf(), number).unwrap();
     }
 }
 
