@@ -158,8 +158,7 @@ def generate(work):
     # What of the narrowing needs no manifest and no maps.
     uniform = (ROOT / "src/sheet/uniform.rs").read_text().split("/// Twin of `Paper`.")[0]
     uniform = re.sub(r"    manifest::[^\n]*\n|    maps::[^\n]*\n", "", uniform)
-    (crate / "src/sheet/uniform.rs").write_text("#![allow(unused)]\nconst MAX_PARTICLES: usize = 6;\n"
-                                                .replace("#![allow(unused)]\n", "") + uniform)
+    write(crate / "src/sheet/uniform.rs", uniform)
     shaders = ROOT / "shaders"
     write(crate / "src/lib.rs", f'''
 pub mod units; pub mod colour; pub mod optics; pub mod reference;
