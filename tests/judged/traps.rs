@@ -174,7 +174,7 @@ fn trap_9_lobes_and_refraction_end_where_they_should() {
     assert!(phase_lobe(1.0, 1.0).is_finite() && phase_lobe(-1.0, -1.0).is_finite());
     assert!((1.0f64 - 1.0 / 0.81).sqrt().is_nan());
     assert_eq!(inner_cosine(0.0, 0.9), 0.0);
-    assert_eq!(inner_cosine(1.0 + 1e-9, N), 1.0);
+    assert!((inner_cosine(1.0 + 1e-9, N) - 1.0).abs() < 1e-8);
     // A sheet of no thickness has no inside.
     let none = Slab {
         thickness: 1e-12,

@@ -11,7 +11,7 @@ use recto::{
             Film, beyond_capture, diffuse_share, inner_cosine, internal_reflectance, optical_depth,
         },
         microfacet::v_hammon,
-        relief::{march_reach, mean_length, rise_of, slope_variance, widened},
+        relief::{SHORTENING_NOISE, march_reach, mean_length, rise_of, slope_variance, widened},
         slab::Phase,
         study::{
             Particle, Seen, Split, Through, crossing, particle_capture, particle_lobe,
@@ -400,6 +400,9 @@ fn relief_parts() -> (Twins, impl Fn(&[f64]) -> f64) {
     // 1 − ℓ² cancels to some roundings of 1, which the square root of a near-mirror magnifies.
     let rounding = |x: &[f64]| {
         let length = mean_length(DVec3::Z * x[1]);
+        if 1.0 - length * length < SHORTENING_NOISE - UNIT_PRODUCT {
+            return 0.0;
+        }
         let variance = UNIT_PRODUCT / (length * length);
         variance.max(0.5 * variance / widened(x[0], length))
     };
@@ -551,9 +554,8 @@ fn compare_each<const N: usize>(
     physics: &str,
     rounding: impl Fn(&[f64]) -> [f64; N],
 ) -> Result<f64, String> {
-    let found = twins.found(gpu, physics);
-    let pairs: Vec<Pair> = twins
-        .cases
+    let (found, cases) = (twins.found(gpu, physics), twins.cases(gpu));
+    let pairs: Vec<Pair> = cases
         .iter()
         .zip(found.chunks(N))
         .flat_map(|(case, found)| {
@@ -568,7 +570,7 @@ fn compare_each<const N: usize>(
         })
         .collect();
     judge(twins.name, &pairs, |i| {
-        format!("{:?}, output {}", twins.cases[i / N], i % N)
+        format!("{:?}, output {}", cases[i / N], i % N)
     })
 }
 

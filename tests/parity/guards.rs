@@ -7,7 +7,7 @@ use super::{
     baselines::{self, physics},
     extremes::*,
     interfaces::compare_interfaces,
-    study::{anisotropic, compare_study, conductors},
+    study::{anisotropic, conductors},
     *,
 };
 
@@ -35,7 +35,6 @@ const RECTANGLE: Comparator = |gpu, text| compare_lamps(gpu, text, Lamps::Rectan
 const DISC: Comparator = |gpu, text| compare_lamps(gpu, text, Lamps::Disc);
 const IES: Comparator = |gpu, text| compare_lamps(gpu, text, Lamps::Ies);
 const CONDUCTORS: Comparator = |gpu, text| conductors().compare(gpu, text);
-const STUDY: Comparator = |gpu, text| compare_study(gpu, text, 0);
 
 const GUARDS: [Guard; 34] = [
     Guard(
@@ -79,13 +78,6 @@ const GUARDS: [Guard; 34] = [
         "max(passes, vec3(1e-6))",
         "passes",
         compare_ink,
-    ),
-    Guard(
-        2,
-        "particle_shares",
-        "max(mirrored, vec3(1e-6))",
-        "mirrored",
-        STUDY,
     ),
     Guard(
         2,
@@ -217,8 +209,15 @@ const GUARDS: [Guard; 34] = [
     Guard(
         9,
         "inner_cosine",
-        "sqrt(max(1.0 - max(1.0 - mu * mu, 0.0) / (eta * eta), 0.0))",
-        "sqrt(1.0 - max(1.0 - mu * mu, 0.0) / (eta * eta))",
+        "max((eta - 1.0) * (eta + 1.0) + mu * mu, 0.0)",
+        "(eta - 1.0) * (eta + 1.0) + mu * mu",
+        compare_inner_cosines,
+    ),
+    Guard(
+        9,
+        "inner_cosine",
+        "sqrt(max((eta - 1.0) * (eta + 1.0) + mu * mu, 0.0)) / eta",
+        "sqrt(max(1.0 - (1.0 - mu * mu) / (eta * eta), 0.0))",
         compare_inner_cosines,
     ),
     Guard(
@@ -274,7 +273,7 @@ const GUARDS: [Guard; 34] = [
 
 #[test]
 fn no_guard_can_be_taken_out() {
-    let gpu = Gpu::new();
+    let gpu = Gpu::sampling(8);
     let mut passed = Vec::new();
     for Guard(trap, function, sound, wrong, compare) in &GUARDS {
         if let Ok(error) = compare(&gpu, &without(function, sound, wrong)) {
@@ -324,6 +323,10 @@ fn loose(text: &str) -> Vec<String> {
             found.push(format!("exp({}", rest.lines().next().unwrap_or_default()));
         }
     }
+    // Where nothing is mirrored the driver that this was written on takes 0/0 for 0, by luck.
+    if code.contains("/ mirrored") {
+        found.push("a quotient by what may be nothing".into());
+    }
     found
 }
 
@@ -342,6 +345,7 @@ fn no_loose_function_is_called_and_no_exponent_is_unbounded() {
             "min(n * decay, DECAY_MAX)",
             "(n * decay)",
         ),
+        ("particle_shares", "max(mirrored, vec3(1e-6))", "mirrored"),
         (
             "d_gauss",
             "min(angle_squared(sin2_h) / w, DECAY_MAX)",

@@ -132,9 +132,9 @@ fn lamp(seeded: &Seeded, lamps: Lamps) -> Light {
     Light { shape, amount }
 }
 
-fn lamp_cases(lamps: Lamps) -> Vec<LampCase> {
+fn lamp_cases(lamps: Lamps, every: usize) -> Vec<LampCase> {
     let seeded = Seeded::new(3);
-    (0..200_000)
+    (0..200_000 / every)
         .map(|_| {
             let light = lamp(&seeded, lamps);
             let narrow = LightUniform::new(&light, false);
@@ -240,7 +240,7 @@ fn lamp_rounding(case: &LampCase, twin: &Incidence) -> (f64, f64) {
 }
 
 pub fn compare_lamps(gpu: &Gpu, physics: &str, lamps: Lamps) -> Result<f64, String> {
-    let cases = lamp_cases(lamps);
+    let cases = lamp_cases(lamps, gpu.every);
     let given: Vec<f32> = cases
         .iter()
         .flat_map(|case| {
@@ -312,7 +312,7 @@ const ANGLE: f64 = 2e-5;
 
 /// Angles of IES lamps.
 pub fn judge_angles(gpu: &Gpu) {
-    let cases = lamp_cases(Lamps::Ies);
+    let cases = lamp_cases(Lamps::Ies, gpu.every);
     let given: Vec<f32> = cases
         .iter()
         .flat_map(|case| {

@@ -37,7 +37,7 @@ pub fn judge_relief(gpu: &Gpu) {
 
 #[test]
 fn a_broken_widening_is_found() {
-    let gpu = Gpu::new();
+    let gpu = Gpu::sampling(BROKEN);
     let narrow = broken("alpha * alpha + slope_variance(length)", "alpha * alpha");
     assert!(minified().compare(&gpu, &narrow).is_err());
 }
@@ -93,7 +93,7 @@ fn marched() -> Twins {
 
 #[test]
 fn a_broken_march_is_found() {
-    let gpu = Gpu::new();
+    let gpu = Gpu::sampling(BROKEN);
     for (right, wrong) in [
         ("Horizon(rise / t, width / t)", "Horizon(rise / t, width)"),
         ("(rise * horizon.softness)", "horizon.softness"),

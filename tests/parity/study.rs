@@ -323,7 +323,10 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
 pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String> {
     let (name, paper, mean, study) = papers().swap_remove(number);
     let (film, constants) = constants(&study);
-    let cases = spots(&paper, &study);
+    let cases: Vec<Vec<f32>> = spots(&paper, &study)
+        .into_iter()
+        .step_by(gpu.every)
+        .collect();
     let path = |i: usize| {
         let at = |k: usize| format!("given[at + {}u]", PATHS + 4 * i + k);
         format!("vec4({}, {}, {}, {})", at(0), at(1), at(2), at(3))
@@ -355,10 +358,10 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
         found[to + 6u] = c.x; found[to + 7u] = c.y; found[to + 8u] = c.z;
         found[to + 9u] = d.x; found[to + 10u] = d.y; found[to + 11u] = d.z;
         // Light and eye exchanged, and the sheet turned over with them.
-        let back = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h);
+        let exchanged = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h);
         let turned = Seen(seen.depth_b, seen.clear, seen.depth_f, seen.rho_b, seen.rho_f);
-        let e = brdf_study(s, back, at_o, at_i, mean, split, depth, particle, shares);
-        let h = btdf_study(through, turned, back, at_o, at_i, s.eta);
+        let e = brdf_study(s, exchanged, at_o, at_i, mean, split, depth, particle, shares);
+        let h = btdf_study(through, turned, exchanged, at_o, at_i, s.eta);
         found[to + 12u] = e.x; found[to + 13u] = e.y; found[to + 14u] = e.z;
         found[to + 15u] = h.x; found[to + 16u] = h.y; found[to + 17u] = h.z;",
         film.len(),
@@ -432,7 +435,7 @@ pub fn judge_study(gpu: &Gpu) {
 
 #[test]
 fn a_broken_study_is_found() {
-    let gpu = Gpu::new();
+    let gpu = Gpu::sampling(BROKEN);
     for (sound, wrong) in [
         (
             "let path = path_i + path_o - capture;",

@@ -53,6 +53,8 @@ const WORKGROUP: u32 = 64;
 pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    /// Of how many prepared inputs one is run.
+    pub every: usize,
     /// Inputs so far.
     tuples: Cell<usize>,
     /// Entry points so far.
@@ -76,8 +78,17 @@ impl Gpu {
         Self {
             device,
             queue,
+            every: 1,
             tuples: Cell::default(),
             asked: RefCell::default(),
+        }
+    }
+
+    /// The same for a share of the inputs: enough to see what is plainly broken.
+    pub fn sampling(every: usize) -> Self {
+        Self {
+            every,
+            ..Self::new()
         }
     }
 
