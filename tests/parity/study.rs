@@ -42,7 +42,7 @@ pub fn conductors() -> Twins {
     }
 }
 
-pub fn anisotropic() -> Twins {
+fn anisotropic() -> Twins {
     let seeded = Seeded::new(12);
     Twins {
         name: "anisotropic facets",
@@ -70,17 +70,19 @@ pub fn anisotropic() -> Twins {
     }
 }
 
+pub fn compare_anisotropic(gpu: &Gpu, physics: &str) -> Result<f64, String> {
+    // 1 − x² − y² of a half vector cancels towards grazing, as in f64 only later.
+    anisotropic().compare_rounded(gpu, physics, |x| {
+        let d = d_ggx_anisotropic(x[0], x[1], x[6], x[7]);
+        let grazing = (x[0] / x[6]).hypot(x[1] / x[7]).powi(2).max(1e-6);
+        4.0 * d * UNIT_PRODUCT / grazing
+    })
+}
+
 /// Facets of metal and of combed paper.
 pub fn judge_facets(gpu: &Gpu) {
     conductors().compare(gpu, bsdf()).unwrap();
-    // 1 − x² − y² of a half vector cancels towards grazing, as in f64 only later.
-    anisotropic()
-        .compare_rounded(gpu, bsdf(), |x| {
-            let d = d_ggx_anisotropic(x[0], x[1], x[6], x[7]);
-            let grazing = (x[0] / x[6]).hypot(x[1] / x[7]).powi(2).max(1e-6);
-            4.0 * d * UNIT_PRODUCT / grazing
-        })
-        .unwrap();
+    compare_anisotropic(gpu, bsdf()).unwrap();
 }
 
 fn places_and_paths() -> Twins {

@@ -78,7 +78,12 @@ impl Gpu {
         Self {
             device,
             queue,
-            every: 1,
+            // What is wrong in one case in a few is wrong enough to be caught.
+            every: if std::env::var_os(MUTANTS).is_some() {
+                8
+            } else {
+                1
+            },
             tuples: Cell::default(),
             asked: RefCell::default(),
         }
