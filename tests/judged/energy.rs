@@ -1,13 +1,17 @@
 //! Energy and reciprocity of the tiers in f64, over directions, roughness, index and ink.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::{
+    f64::consts::{FRAC_PI_2, PI, TAU},
+    sync::Arc,
+};
 
 use glam::DVec3;
 use recto::optics::{
-    ink::{internal_reflectance, optical_depth},
+    ink::{capture_path, internal_reflectance, optical_depth},
+    refraction::PathTable,
     slab::Slab,
     study::{
-        Particle, Seen, Study, brdf_particles, brdf_study, btdf_study, particle_shares,
+        Particle, Seen, Study, Ways, brdf_particles, brdf_study, btdf_study, particle_shares,
         through_study,
     },
     table::{InterfaceMean, InterfaceTable},
@@ -39,14 +43,22 @@ impl Side {
         let table = InterfaceTable::at_roughness(alpha, n, 1.0);
         let mean = table.mean_at(alpha);
         let r_i = 1.0 - mean.t_mean / (n * n);
-        let r_b = slab.body(r_i).backed(r_i);
         let unlit = Surface::new(DVec3::ZERO, alpha, n, 1.0);
-        let albedo = r_b / (1.0 - r_i * r_b) / (n * n * mean.capture);
-        let surface = Surface {
-            albedo: DVec3::splat(albedo + capture_floor(&unlit, &mean)),
-            ..unlit
+        let paths = Arc::new(PathTable::at_roughness(alpha, n));
+        let of = |albedo: f64| {
+            let surface = Surface {
+                albedo: DVec3::splat(albedo),
+                ..unlit
+            };
+            (surface, Study::new(&surface, &table, paths.clone(), slab))
         };
-        let study = Study::new(&surface, &mean, slab);
+        // What it photographs as, study tells from its mean.
+        let (mut surface, mut study) = of(0.8);
+        for _ in 0..3 {
+            let r_b = slab.body(r_i, study.split.inner_mean).backed(r_i);
+            let lit = r_b / (1.0 - r_i * r_b) / (n * n * mean.capture);
+            (surface, study) = of(lit / study.split.at_capture.x + capture_floor(&unlit, &mean));
+        }
         Self {
             surface,
             table,
@@ -67,7 +79,16 @@ impl Side {
     fn depth(&self, s: &Surface) -> DVec3 {
         let film = &self.study.film;
         let share = albedo_of(s, &self.mean) / self.study.bare;
-        optical_depth(film, film.capture_path, share)
+        optical_depth(film, self.ways(1.0, 1.0).capture, share)
+    }
+
+    fn ways(&self, mu_i: f64, mu_o: f64) -> Ways {
+        let (paths, alpha) = (&self.study.film.paths, self.surface.alpha);
+        Ways {
+            capture: capture_path(paths, alpha),
+            path_i: paths.at(mu_i, alpha),
+            path_o: paths.at(mu_o, alpha),
+        }
     }
 
     fn brdf(&self, s: &Surface, particle: &Particle, l: DVec3, v: DVec3) -> DVec3 {
@@ -75,8 +96,10 @@ impl Side {
         let [at_i, at_o] = [g.mu_i, g.mu_o].map(|mu| self.table.at(mu, s.alpha));
         let shares = particle_shares(s, &self.mean, self.study.bare, particle);
         let (mean, split, depth) = (&self.mean, &self.study.split, self.depth(s));
-        brdf_study(s, &g, &at_i, &at_o, mean, split, depth, particle, &shares)
-            + brdf_particles(&shares, particle, &g)
+        let ways = self.ways(g.mu_i, g.mu_o);
+        brdf_study(
+            s, &g, &at_i, &at_o, mean, split, depth, &ways, particle, &shares,
+        ) + brdf_particles(&shares, particle, &g)
     }
 
     /// ∫ f μ dω of what is not the surface's own reflection.
@@ -108,8 +131,9 @@ impl Side {
                 let [at_i, at_o] = [g.mu_i, g.mu_o].map(|mu| self.table.at(mu, s.alpha));
                 let none = Particle::default();
                 let split = &self.study.split;
+                let ways = self.ways(g.mu_i, g.mu_o);
                 sum += brdf_study(
-                    &matt, &g, &at_i, &at_o, &unlit, split, depth, &none, &shares,
+                    &matt, &g, &at_i, &at_o, &unlit, split, depth, &ways, &none, &shares,
                 )
                 .x;
             }
@@ -119,9 +143,10 @@ impl Side {
 
     fn seen(&self, front: DVec3, back: DVec3) -> Seen {
         let film = &self.study.film;
+        let capture = self.ways(1.0, 1.0).capture;
         Seen {
-            depth_f: optical_depth(film, film.capture_path, front),
-            depth_b: optical_depth(film, film.capture_path, back),
+            depth_f: optical_depth(film, capture, front),
+            depth_b: optical_depth(film, capture, back),
             rho_f: internal_reflectance(film, front),
             rho_b: internal_reflectance(film, back),
             clear: 1.0,
@@ -133,16 +158,9 @@ impl Side {
         let at_o = self.table.at(mu, self.surface.alpha);
         let (film, through) = (&self.study.film, &self.study.through);
         let seen = self.seen(front, back);
-        through_study(
-            film,
-            through,
-            &seen,
-            &at_o,
-            &self.mean,
-            mu,
-            self.surface.eta,
-        )
-        .x
+        let path_o = self.ways(1.0, mu).path_o;
+        let eta = self.surface.eta;
+        through_study(film, through, &seen, &at_o, &self.mean, path_o, eta).x
     }
 }
 
@@ -227,16 +245,16 @@ fn light_may_go_either_way_through_ink_particles_and_the_sheet() {
                     }
                     // Light from behind, and the sheet turned over. Both sides are in air: what
                     // n² radiance gains on the way in, it loses on the way out.
-                    let g = facing(DVec3::Z, direction(mu_i, 0.0), direction(mu_o, 0.0));
-                    let turned = facing(DVec3::Z, direction(mu_o, 0.0), direction(mu_i, 0.0));
-                    let [at_i, at_o] = [g.mu_i, g.mu_o].map(|mu| side.table.at(mu, alpha));
+                    let [at_i, at_o] = [mu_i, mu_o].map(|mu| side.table.at(mu, alpha));
                     let paper = &side.study.through;
                     let ways = [side.seen(front, back), side.seen(back, front)];
-                    let there = btdf_study(paper, &ways[0], &g, &at_i, &at_o, n);
-                    let back = btdf_study(paper, &ways[1], &turned, &at_o, &at_i, n);
+                    let mean = &side.mean;
+                    let Ways { path_i, path_o, .. } = side.ways(mu_i, mu_o);
+                    let there = btdf_study(paper, &ways[0], &at_i, &at_o, mean, path_i, path_o, n);
+                    let back = btdf_study(paper, &ways[1], &at_o, &at_i, mean, path_o, path_i, n);
                     through = through.max(apart(there, back));
                     // Without turning the inks with the sheet it is another one.
-                    let same = btdf_study(paper, &ways[0], &turned, &at_o, &at_i, n);
+                    let same = btdf_study(paper, &ways[0], &at_o, &at_i, mean, path_o, path_i, n);
                     one_way = one_way.max(apart(there, same));
                 }
             }

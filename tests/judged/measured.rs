@@ -5,12 +5,16 @@
 //! takes gallery's), and an albedo per channel. They are fitted to every other direction of the light and judged by the
 //! rest.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use recto::{
     optics::{
         baselines::brdf_isle,
+        ink::capture_path,
+        refraction::PathTable,
         slab::Slab,
-        study::{Particle, Study, brdf_study, particle_shares},
+        study::{Particle, Study, Ways, brdf_study, particle_shares},
         table::InterfaceTable,
         tier::{Surface, brdf_gallery, facing},
     },
@@ -55,14 +59,22 @@ fn study(&[alpha, n, specular]: &[f64; 3], albedo: DVec3, readings: &[Reading]) 
     let s = Surface::new(albedo, alpha, n, specular);
     let table = InterfaceTable::at_roughness(alpha, n, specular);
     let mean = table.mean_at(alpha);
-    let study = Study::new(&s, &mean, Slab::rag_paper(THICKNESS));
+    let paths = Arc::new(PathTable::at_roughness(alpha, n));
+    let study = Study::new(&s, &table, paths.clone(), Slab::rag_paper(THICKNESS));
     let none = Particle::default();
     let shares = particle_shares(&s, &mean, study.bare, &none);
     let f = |r: &Reading| {
         let g = facing(DVec3::Z, r.l, r.v);
         let [at_i, at_o] = [g.mu_i, g.mu_o].map(|mu| table.at(mu, alpha));
         let (split, bare) = (&study.split, DVec3::ZERO);
-        brdf_study(&s, &g, &at_i, &at_o, &mean, split, bare, &none, &shares)
+        let ways = Ways {
+            capture: capture_path(&paths, alpha),
+            path_i: paths.at(g.mu_i, alpha),
+            path_o: paths.at(g.mu_o, alpha),
+        };
+        brdf_study(
+            &s, &g, &at_i, &at_o, &mean, split, bare, &ways, &none, &shares,
+        )
     };
     readings.iter().map(f).collect()
 }

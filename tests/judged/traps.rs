@@ -2,7 +2,7 @@
 //! its guard fails at the extreme where the shipped one holds. The shader's guards are taken out
 //! in tests/parity/guards.rs.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, sync::Arc};
 
 use glam::{DVec3, Vec3};
 use recto::optics::{
@@ -12,8 +12,10 @@ use recto::optics::{
     lamp::{DISTANCE2_MIN_MM2, Light, Shape},
     lamp_units::{area_axes, point_intensity},
     microfacet::{ALPHA_MIN, MU_MIN, d_ggx, v_smith},
+    refraction::PathTable,
     slab::Slab,
-    study::{crossing, phase_lobe},
+    study::{Seen, Through, crossing, phase_lobe},
+    table::InterfaceTable,
     tier::{Facing, Surface, facing},
 };
 
@@ -74,7 +76,24 @@ fn traps_2_and_4_quotients_are_guarded_before_they_are_taken() {
     // A sheet that gives back all, between mirrors.
     let (none, all) = (DVec3::ZERO, DVec3::ONE);
     assert!((none / (none * none)).is_nan());
-    assert_eq!(crossing(all, none, all, all, N), none);
+    let through = Through {
+        reflected: all,
+        inner_mean: 1.0,
+        transmitted: none,
+        ballistic: none,
+        reflected_leaning: none,
+        transmitted_leaning: none,
+        straight_mean: none,
+        flat_share: none,
+    };
+    let seen = Seen {
+        depth_f: none,
+        clear: 1.0,
+        depth_b: none,
+        rho_f: all,
+        rho_b: all,
+    };
+    assert_eq!(crossing(&through, &seen, 1.0, 1.0, N), none);
 }
 
 #[test]
@@ -130,7 +149,7 @@ fn trap_7_quotients_of_sines_meet_both_limits() {
                 thickness,
                 ..OPAQUE.slab()
             };
-            let body = slab.body(r_i);
+            let body = slab.body(r_i, 1.0);
             let shares = [body.reflected, body.transmitted];
             let sound = |share: &f64| (0.0..=1.0).contains(share);
             assert!(shares.iter().all(sound), "{slab:?}: {body:?}");
@@ -143,7 +162,7 @@ fn trap_7_quotients_of_sines_meet_both_limits() {
         let sigma_t = (1.0 - slab.phase.mean_cosine()) * slab.scattering;
         let l = slab.thickness + 4.0 * (1.0 + r_i) / (1.0 - r_i) / (3.0 * sigma_t);
         let absorption = (sigma_tr_l / l).powi(2) / (3.0 * sigma_t);
-        Slab { absorption, ..slab }.body(r_i).transmitted
+        Slab { absorption, ..slab }.body(r_i, 1.0).transmitted
     };
     let steps: Vec<f64> = (0..20).map(|i| at(0.9e-3 + 1e-5 * f64::from(i))).collect();
     for two in steps.windows(2) {
@@ -153,9 +172,13 @@ fn trap_7_quotients_of_sines_meet_both_limits() {
 
 #[test]
 fn trap_8_black_is_a_depth() {
-    assert!((-f64::ln(0.0) / capture_path(N)).is_infinite());
-    let film = Film::new(N, 0.5963, DVec3::splat(0.85));
-    let depth = |x: f64| optical_depth(&film, film.capture_path, DVec3::splat(x)).x;
+    let alpha = 0.4;
+    let table = InterfaceTable::at_roughness(alpha, N, 1.0);
+    let paths = Arc::new(PathTable::at_roughness(alpha, N));
+    let capture = capture_path(&paths, alpha);
+    assert!((-f64::ln(0.0) / capture.x).is_infinite());
+    let film = Film::new(N, alpha, &table, paths, 0.5963, DVec3::splat(0.85));
+    let depth = |x: f64| optical_depth(&film, capture, DVec3::splat(x)).x;
     for x in [-1.0, 0.0, 1e-300, 1e-20] {
         assert_eq!(depth(x), 20.0, "{x}");
     }
@@ -180,7 +203,7 @@ fn trap_9_lobes_and_refraction_end_where_they_should() {
         thickness: 1e-12,
         ..OPAQUE.slab()
     };
-    let (x, t) = none.with_boundaries(0.5963);
+    let (x, t) = none.with_boundaries(0.5963, 1.0);
     assert!(x.is_finite() && t.is_finite() && x + t <= 1.0 + 1e-9);
 }
 

@@ -36,7 +36,7 @@ SHADERS = ["shaders/paper_bsdf.wgsl", "shaders/paper_baselines.wgsl"]
 # Not medium.rs and medium/catalogue.rs, which are data. Arrays of numbers are left out below.
 SOURCES = [f"src/optics/{name}.rs" for name in (
     "baselines bsdf fresnel ink lamp lamp_units microfacet photometry quadrature relief slab "
-    "spectrum study table tier").split()]
+    "refraction late spectrum study table tier").split()]
 # Mutants that a test only notices by never ending are caught too.
 LONGEST_S = 600
 # A minute long, and what it sees the others see earlier.

@@ -4,20 +4,23 @@
 //! of theirs cannot hide behind a larger term. `numbers!` writes a body that reads its inputs in
 //! order.
 
-use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3, DVec4};
 use recto::{
     optics::{
         ink::{
-            Film, beyond_capture, diffuse_share, inner_cosine, internal_reflectance, optical_depth,
+            Film, beyond_capture, capture_path, inner_cosine, internal_reflectance, optical_depth,
         },
         microfacet::v_hammon,
+        refraction::{PathTable, crossed, mean_inner_cosine},
         relief::{SHORTENING_NOISE, march_reach, mean_length, rise_of, slope_variance, widened},
         slab::Phase,
         study::{
             Particle, Seen, Split, Through, crossing, particle_capture, particle_lobe,
-            phase_function, phase_lobe, single_scatter, split_shape, spot_crossing,
-            spot_transmitted,
+            phase_function, phase_lobe, single_scatter, split_mean, split_shape,
         },
+        table::InterfaceTable,
         tier::{albedo_of, brdf_gallery_specular},
     },
     sheet::{PAPER_BASELINES, uniform::FilmUniform},
@@ -31,7 +34,7 @@ use super::{
 use crate::{
     lamps::{judge_angles, judge_lamps},
     relief::judge_relief,
-    study::{judge_facets, judge_study},
+    study::{compare_paths, judge_facets, judge_study},
 };
 
 /// The issue asks for a million tuples on the device.
@@ -107,63 +110,149 @@ fn inner_cosines() -> Twins {
     }
 }
 
-fn ink_parts() -> Twins {
+/// Paths as an interface of this index and roughness has them, towards these cosines.
+fn paths_of(seeded: &Seeded, tables: &[(f64, f64, PathTable)], count: usize) -> Vec<f64> {
+    let (_, alpha, table) = &tables[seeded.bits() as usize % tables.len()];
+    let at = |_| table.at(seeded.log_or_zero(1e-4, 1.0), *alpha).to_array();
+    (0..count).flat_map(at).collect()
+}
+
+/// From hardly any refraction to a diamond's, from mirrors to the roughest.
+fn path_tables() -> Vec<(f64, f64, PathTable)> {
+    [(1.01, 0.4), (1.33, 0.0), (1.5, 0.4), (1.5, 1.0), (2.5, 0.2)]
+        .map(|(n, alpha)| (n, alpha, PathTable::at_roughness(alpha, n)))
+        .into()
+}
+
+/// Light along paths through films of any depth.
+fn films_crossed() -> Twins {
+    let tables = path_tables();
+    let four = |from: usize| {
+        let each: Vec<String> = (from..from + 4)
+            .map(|i| format!("given[at + {i}u]"))
+            .collect();
+        format!("vec4({})", each.join(", "))
+    };
     Twins {
-        name: "beyond_capture, crossing",
+        name: "beyond_capture, crossed, mean_inner_cosine",
         body: format!(
-            "{} {}",
+            "let capture = {} + {}; let path_i = {}; let path_o = {};
+            {} {} found[to + 6u] = mean_inner_cosine(path_i);",
+            four(3),
+            four(7),
+            four(11),
+            four(15),
             colours(
                 0,
-                &format!(
-                    "beyond_capture({}, given[at + 3u], given[at + 4u], given[at + 5u])",
-                    vector(0)
-                )
+                &format!("beyond_capture({}, capture, path_i, path_o)", vector(0))
             ),
-            colours(
-                3,
-                &format!(
-                    "crossing({}, {}, {}, {}, given[at + 18u])",
-                    vector(6),
-                    vector(9),
-                    vector(12),
-                    vector(15)
-                )
-            ),
+            colours(3, &format!("crossed(path_i, {})", vector(0))),
         ),
         twin: |x| {
-            let v = |i: usize| DVec3::from_slice(&x[i..]);
-            let beyond = beyond_capture(v(0), x[3], x[4], x[5]);
-            let crossed = crossing(v(6), v(9), v(12), v(15), x[18]);
-            [beyond.to_array(), crossed.to_array()].concat()
+            let four = |i: usize| DVec4::from_slice(&x[i..]);
+            let (tau, capture) = (DVec3::from_slice(x), four(3) + four(7));
+            let beyond = beyond_capture(tau, capture, four(11), four(15)).to_array();
+            let through = crossed(four(11), tau).to_array();
+            [&beyond[..], &through, &[mean_inner_cosine(four(11))]].concat()
         },
         relative: |_| RELATIVE,
         cases: cases(21, |seeded| {
             let depth = || seeded.log_or_zero(1e-6, 20.0);
-            let share = || seeded.log_or_zero(1e-6, 1.0);
-            let eta = 1.0 + seeded.log(1e-2, 2.0);
-            let inner = || inner_cosine(seeded.log(1e-4, 1.0), eta);
-            let path = 1.0 / inner_cosine(std::f64::consts::FRAC_1_SQRT_2, eta) + 1.0;
-            let mut case = vec![depth(), depth(), depth(), path, inner(), inner()];
-            // R0 up to 1, and T0 of what is left.
-            let r = [(); 3].map(|()| 1.0 - share());
-            case.extend(r);
-            case.extend(r.map(|r| (1.0 - r) * share()));
-            // ρ on both sides, up to a mirror's.
-            case.extend((0..6).map(|_| if seeded.bits() % 8 == 0 { 1.0 } else { share() }));
-            case.push(eta);
+            let mut case = vec![depth(), depth(), depth()];
+            case.extend(paths_of(seeded, &tables, 4));
             case
         }),
     }
 }
 
-/// What the rounding of passes between the sides costs light that crosses them: 0 where the floor
-/// holds.
-fn crossing_rounding(x: &[f64]) -> f64 {
+/// What the terms of a path are rounded by, times the depth: the exponent's error.
+fn path_rounding(x: &[f64]) -> f64 {
+    let terms: f64 = x[3..19].iter().map(|c| c.abs()).sum();
+    let deepest = x[..3].iter().copied().fold(0.0, f64::max);
+    terms * UNIT_PRODUCT * (1.0 + deepest)
+}
+
+fn through_of(x: &[f64]) -> (Through, Seen) {
     let v = |i: usize| DVec3::from_slice(&x[i..]);
-    let (r, t, f, b) = (v(6), v(9), v(12), v(15));
+    let through = Through {
+        reflected: v(0),
+        inner_mean: 0.0,
+        transmitted: v(3),
+        ballistic: DVec3::ZERO,
+        reflected_leaning: v(6),
+        transmitted_leaning: v(9),
+        straight_mean: DVec3::ZERO,
+        flat_share: DVec3::ZERO,
+    };
+    let seen = Seen {
+        depth_f: DVec3::ZERO,
+        clear: x[18],
+        depth_b: DVec3::ZERO,
+        rho_f: v(12),
+        rho_b: v(15),
+    };
+    (through, seen)
+}
+
+/// Light between both sides of the paper, down to sheets that give back all between mirrors.
+fn crossings() -> Twins {
+    Twins {
+        name: "crossing",
+        body: format!(
+            "let none = vec3(0.0);
+            let through = Through({}, 0.0, {}, none, {}, {}, none, none);
+            let seen = Seen(none, given[at + 18u], none, {}, {});
+            {}",
+            vector(0),
+            vector(3),
+            vector(6),
+            vector(9),
+            vector(12),
+            vector(15),
+            colours(
+                0,
+                "crossing(through, seen, given[at + 19u], given[at + 20u], given[at + 21u])"
+            ),
+        ),
+        twin: |x| {
+            let (through, seen) = through_of(x);
+            let crossed = crossing(&through, &seen, x[19], x[20], x[21]);
+            crossed.to_array().to_vec()
+        },
+        relative: |_| RELATIVE,
+        cases: cases(24, |seeded| {
+            let share = || seeded.log_or_zero(1e-6, 1.0);
+            // R0 up to 1, T0 of what is left, and how both lean with the light.
+            let r = [(); 3].map(|()| 1.0 - share());
+            let t = r.map(|r| (1.0 - r) * share());
+            let mut case = [r, t].concat();
+            case.extend(t.map(|t| t * share()));
+            case.extend(t.map(|t| t * share()));
+            // ρ on both sides, up to a mirror's.
+            case.extend((0..6).map(|_| match seeded.bits() % 8 {
+                0 => 1.0,
+                _ => share(),
+            }));
+            case.extend([seeded.log_or_zero(1e-2, 1e3), share(), share()]);
+            case.push(1.0 + seeded.log(1e-2, 2.0));
+            case
+        }),
+    }
+}
+
+/// What the rounding of light between both sides costs what crosses: differences of shares, over
+/// the passes, which may nearly cancel.
+fn crossing_rounding(x: &[f64]) -> f64 {
+    let (through, seen) = through_of(x);
+    let t = (through.transmitted * seen.clear).min(through.reflected + through.transmitted);
+    let r = through.reflected + through.transmitted - t;
+    let (f, b) = (seen.rho_f, seen.rho_b);
     let passes = ((1.0 - r * f) * (1.0 - r * b) - t * t * f * b).max(DVec3::splat(1e-6));
-    let rounded = t / (x[18] * x[18] * passes) * (UNIT_PRODUCT / passes);
-    rounded.max_element()
+    let leaning = (through.transmitted_leaning + through.reflected_leaning) * seen.clear;
+    let terms = through.reflected + through.transmitted + 4.0 * leaning;
+    let crossed = crossing(&through, &seen, x[19], x[20], x[21]);
+    let rounded = terms / (x[21] * x[21] * passes) + crossed / passes;
+    rounded.max_element() * 2.0 * UNIT_PRODUCT
 }
 
 fn split_of(x: &[f64]) -> Split {
@@ -172,12 +261,14 @@ fn split_of(x: &[f64]) -> Split {
         mean: x[3],
         at_capture: DVec3::from_slice(&x[4..]),
         depth: x[7],
+        leaning: DVec3::from_slice(&x[19..]),
+        inner_mean: x[22],
+        of_direction: DVec4::from_slice(&x[23..]),
         phase: Phase {
             forward_share: x[8],
             g_forward: x[9],
             g_backward: x[10],
         },
-        capture_path: 2.0,
     }
 }
 
@@ -185,17 +276,23 @@ fn split_of(x: &[f64]) -> Split {
 /// ends, slabs from a film of next to nothing on.
 fn scattering() -> Twins {
     Twins {
-        name: "phase_lobe, phase_function, single_scatter, split_shape",
+        name: "phase_lobe, phase_function, single_scatter, split_mean, split_shape",
         body: format!(
-            "let split = Split({}, given[at + 3u], {}, given[at + 7u], given[at + 8u],
-                given[at + 9u], given[at + 10u], 2.0);
+            "let split = Split({}, given[at + 3u], {}, given[at + 7u], {}, given[at + 22u],
+                vec4({}, given[at + 26u]), given[at + 8u], given[at + 9u], given[at + 10u]);
             let g = Facing(given[at + 11u], given[at + 12u], given[at + 13u], 0.0);
-            {} found[to + 3u] = phase_lobe(split.g_forward, given[at + 17u]);
+            {} found[to + 6u] = split_mean(split, g.mu_i);
+            found[to + 3u] = phase_lobe(split.g_forward, given[at + 17u]);
             found[to + 4u] = phase_function(split, given[at + 17u]);
             found[to + 5u] = single_scatter(split, given[at + 16u], g, given[at + 14u], given[at + 15u]);",
             vector(0),
             vector(4),
-            colours(0, "split_shape(split, given[at + 18u])"),
+            vector(19),
+            vector(23),
+            colours(
+                0,
+                "split_shape(split, given[at + 18u], g.mu_i, g.mu_o, given[at + 14u], given[at + 15u])"
+            ),
         ),
         twin: |x| {
             let split = split_of(x);
@@ -205,13 +302,14 @@ fn scattering() -> Twins {
                 cos_d: x[13],
                 sin2_h: 0.0,
             };
-            let shape = split_shape(&split, x[18]).to_array();
+            let shape = split_shape(&split, x[18], x[11], x[12], x[14], x[15]).to_array();
             let others = [
                 phase_lobe(split.phase.g_forward, x[17]),
                 phase_function(&split, x[17]),
                 single_scatter(&split, x[16], &g, x[14], x[15]),
+                split_mean(&split, x[11]),
             ];
-            [shape, others].concat()
+            [&shape[..], &others].concat()
         },
         relative: |_| RELATIVE,
         cases: cases(22, |seeded| {
@@ -250,6 +348,14 @@ fn scattering() -> Twins {
                 eta,
                 deflection,
                 seeded.log_or_zero(1e-6, 10.0),
+                share(),
+                share(),
+                share(),
+                share(),
+                share(),
+                share(),
+                share(),
+                share(),
             ]
         }),
     }
@@ -257,7 +363,7 @@ fn scattering() -> Twins {
 
 /// The narrowest lobes are (1 − |g|)² wide, which the rounding of a cosine reaches; a shape is a
 /// difference of κq and κq̄.
-fn scattering_rounding(x: &[f64]) -> [f64; 6] {
+fn scattering_rounding(x: &[f64]) -> [f64; 7] {
     let split = split_of(x);
     let narrow = |g: f64| (1.0 - g.abs()).powi(2).max(1e-6);
     let phase = split.phase;
@@ -269,7 +375,10 @@ fn scattering_rounding(x: &[f64]) -> [f64; 6] {
         cos_d: x[13],
         sin2_h: 0.0,
     };
-    let shape = (split.kappa * (x[18] + x[3]) * split.at_capture).max_element() * UNIT_PRODUCT;
+    let means = x[18] + x[3] + 2.0 * split.of_direction.element_sum();
+    let slanted = 2.0 * x[22] + x[14] + x[15];
+    let terms = 1.0 + split.kappa * means + split.leaning * slanted;
+    let shape = (terms * split.at_capture).max_element() * UNIT_PRODUCT;
     [
         shape,
         shape,
@@ -277,6 +386,7 @@ fn scattering_rounding(x: &[f64]) -> [f64; 6] {
         peak * phase_lobe(phase.g_forward, x[17]),
         both * phase_function(&split, x[17]),
         both * single_scatter(&split, x[16], &g, x[14], x[15]),
+        0.0,
     ]
 }
 
@@ -318,63 +428,6 @@ fn particles() -> Twins {
             case
         }),
     }
-}
-
-fn spots() -> Twins {
-    Twins {
-        name: "spot_transmitted, spot_crossing",
-        body: format!(
-            "let through = Through({}, {}, vec3(0.0), vec3(0.0));
-            let seen = Seen(vec3(0.0), given[at + 12u], vec3(0.0), {}, {});
-            {} {}",
-            vector(0),
-            vector(3),
-            vector(6),
-            vector(9),
-            colours(0, "spot_transmitted(through, seen.clear)"),
-            colours(3, "spot_crossing(through, seen, given[at + 13u])")
-        ),
-        twin: |x| {
-            let v = |i: usize| DVec3::from_slice(&x[i..]);
-            let through = Through {
-                reflected: v(0),
-                transmitted: v(3),
-                ballistic: DVec3::ZERO,
-                flat_share: DVec3::ZERO,
-            };
-            let seen = Seen {
-                depth_f: DVec3::ZERO,
-                clear: x[12],
-                depth_b: DVec3::ZERO,
-                rho_f: v(6),
-                rho_b: v(9),
-            };
-            let crossed = spot_crossing(&through, &seen, x[13]);
-            let t = spot_transmitted(&through, seen.clear);
-            [t.to_array(), crossed.to_array()].concat()
-        },
-        relative: |_| RELATIVE,
-        cases: cases(24, |seeded| {
-            let share = || seeded.log_or_zero(1e-6, 1.0);
-            let r = [(); 3].map(|()| share());
-            let mut case = r.to_vec();
-            case.extend(r.map(|r| (1.0 - r) * share()));
-            // A boundary's inside gives back less than all.
-            case.extend((0..6).map(|_| 0.95 * share()));
-            case.extend([seeded.log_or_zero(1e-2, 1e3), 1.0 + seeded.log(1e-2, 2.0)]);
-            case
-        }),
-    }
-}
-
-/// What the rounding of R0 + T0 − T0 costs, and of the passes.
-fn spot_rounding(x: &[f64]) -> f64 {
-    let v = |i: usize| DVec3::from_slice(&x[i..]);
-    let t = (v(3) * x[12]).min(v(0) + v(3));
-    let r = v(0) + v(3) - t;
-    let passes = (1.0 - r * v(6)) * (1.0 - r * v(9)) - t * t * v(6) * v(9);
-    let rounded = t / (x[13] * x[13] * passes) * (2.0 * UNIT_PRODUCT / passes);
-    rounded.max_element()
 }
 
 /// Means of normals of any length, and roughness down to none.
@@ -480,14 +533,17 @@ pub fn compare_films(gpu: &Gpu, physics: &str) -> Result<f64, String> {
         shares
     };
     let depths = log_spaced(1e-8, 20.0, 445);
-    for (n, r_b) in [
-        (1.01, DVec3::splat(0.9)),
-        (1.33, DVec3::new(0.05, 0.3, 0.97)),
-        (1.5, DVec3::new(1.0, 0.8, 0.5)),
-        (2.5, DVec3::new(0.9, 0.6, 0.01)),
+    for (n, alpha, r_b) in [
+        (1.01, 0.4, DVec3::splat(0.9)),
+        (1.33, 0.1, DVec3::new(0.05, 0.3, 0.97)),
+        (1.5, 1.0, DVec3::new(1.0, 0.8, 0.5)),
+        (2.5, 0.6, DVec3::new(0.9, 0.6, 0.01)),
     ] {
-        let r_i = 1.0 - (1.0 - 0.09) / (n * n);
-        let film = Film::new(n, r_i, r_b);
+        let table = InterfaceTable::at_roughness(alpha, n, 1.0);
+        let r_i = (1.0 - table.mean_at(alpha).t_mean / (n * n)).max(0.0);
+        let paths = Arc::new(PathTable::at_roughness(alpha, n));
+        let capture = capture_path(&paths, alpha);
+        let film = Film::new(n, alpha, &table, paths, r_i, r_b);
         let constants = words(&FilmUniform::new(&film));
         let count = constants.len();
         let rows: Vec<String> = (0..count)
@@ -507,10 +563,13 @@ pub fn compare_films(gpu: &Gpu, physics: &str) -> Result<f64, String> {
             rows[14],
             colours(
                 0,
-                &format!("optical_depth(film, {:e}, share)", film.capture_path)
+                &format!(
+                    "optical_depth(film, vec4({:e}, {:e}, {:e}, {:e}), share)",
+                    capture.x, capture.y, capture.z, capture.w
+                )
             ),
             colours(3, "internal_reflectance(film, share)"),
-            colours(6, "diffuse_share(film, vec3(given[at + 1u]))"),
+            colours(6, "crossed(film.diffuse_path, vec3(given[at + 1u]))"),
         );
         let cases: Vec<[f32; 2]> = shares.iter().zip(&depths).map(|(x, t)| [*x, *t]).collect();
         let text = format!("{physics}\n{}", entry("f32", cases.len(), 9, &body));
@@ -523,14 +582,13 @@ pub fn compare_films(gpu: &Gpu, physics: &str) -> Result<f64, String> {
             .zip(found.chunks(9))
             .flat_map(|(case, found)| {
                 let (share, tau) = (DVec3::splat(case[0].into()), DVec3::splat(case[1].into()));
-                let path = film.capture_path;
-                let depth = optical_depth(&film, path, share);
+                let depth = optical_depth(&film, capture, share);
                 let expected = [
                     depth,
                     internal_reflectance(&film, share),
-                    diffuse_share(&film, tau),
+                    crossed(film.diffuse_path, tau),
                 ];
-                let excess = (1.0 + terms(&film.excess)) * UNIT_PRODUCT / path;
+                let excess = (1.0 + terms(&film.excess)) * UNIT_PRODUCT;
                 let rounding = [excess, terms(&film.internal) * UNIT_PRODUCT, 0.0];
                 std::array::from_fn::<_, 9, _>(|k| {
                     let mut pair = Pair::new(found[k], expected[k / 3][k % 3], RELATIVE);
@@ -579,10 +637,13 @@ pub fn compare_inner_cosines(gpu: &Gpu, physics: &str) -> Result<f64, String> {
 }
 
 pub fn compare_ink(gpu: &Gpu, physics: &str) -> Result<f64, String> {
-    compare_each(&ink_parts(), gpu, physics, |x| {
-        let crossed = crossing_rounding(x);
-        [0.0, 0.0, 0.0, crossed, crossed, crossed]
-    })
+    let films = compare_each(&films_crossed(), gpu, physics, |x| {
+        let twins = (films_crossed().twin)(x);
+        let exponent = path_rounding(x);
+        std::array::from_fn::<_, 7, _>(|k| twins[k] * exponent)
+    })?;
+    let crossed = crossings().compare_rounded(gpu, physics, crossing_rounding)?;
+    Ok(films.max(crossed))
 }
 
 pub fn compare_scattering(gpu: &Gpu, physics: &str) -> Result<f64, String> {
@@ -605,15 +666,13 @@ fn every_function_at_a_million_extremes() {
     compare_ink(&gpu, bsdf()).unwrap();
     compare_scattering(&gpu, bsdf()).unwrap();
     particles().compare(&gpu, bsdf()).unwrap();
-    spots()
-        .compare_rounded(&gpu, bsdf(), spot_rounding)
-        .unwrap();
     compare_relief(&gpu, bsdf()).unwrap();
     judge_relief(&gpu);
     compare_rises(&gpu, bsdf()).unwrap();
     compare_angle_of(&gpu, bsdf()).unwrap();
     compare_films(&gpu, bsdf()).unwrap();
     compare_interfaces(&gpu, bsdf()).unwrap();
+    compare_paths(&gpu, bsdf()).unwrap();
     judge_facets(&gpu);
     judge_study(&gpu);
     judge_lamps(&gpu);

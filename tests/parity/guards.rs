@@ -36,7 +36,7 @@ const DISC: Comparator = |gpu, text| compare_lamps(gpu, text, Lamps::Disc);
 const IES: Comparator = |gpu, text| compare_lamps(gpu, text, Lamps::Ies);
 const CONDUCTORS: Comparator = |gpu, text| conductors().compare(gpu, text);
 
-const GUARDS: [Guard; 34] = [
+const GUARDS: [Guard; 35] = [
     Guard(
         1,
         "facing",
@@ -195,8 +195,15 @@ const GUARDS: [Guard; 34] = [
     Guard(
         8,
         "optical_depth",
-        "clamp((-log(x) - excess) / capture_path, vec3(0.0), vec3(DEPTH_MAX))",
-        "max((-log(x) - excess) / capture_path, vec3(0.0))",
+        "min(depth, vec3(DEPTH_MAX))",
+        "depth",
+        compare_films,
+    ),
+    Guard(
+        8,
+        "optical_depth",
+        "max(-log(x) - excess, vec3(0.0))",
+        "(-log(x) - excess)",
         compare_films,
     ),
     Guard(

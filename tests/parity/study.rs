@@ -113,13 +113,10 @@ fn places_and_paths() -> Twins {
     }
 }
 
-#[test]
-fn paths_between_nodes() {
+pub fn compare_paths(gpu: &Gpu, physics: &str) -> Result<f64, String> {
     // The root of the least roughness is taken from those of others.
     const ROOTS: f64 = 4e-6;
-    places_and_paths()
-        .compare_rounded(&Gpu::new(), PAPER_BSDF, |_| ROOTS)
-        .unwrap();
+    places_and_paths().compare_rounded(gpu, physics, |_| ROOTS)
 }
 
 /// Papers at the extremes: index, roughness, bare albedo, σs, thickness in mm, phase.
@@ -362,8 +359,9 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
         // Light and eye exchanged, and the sheet turned over with them.
         let exchanged = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h);
         let turned = Seen(seen.depth_b, seen.clear, seen.depth_f, seen.rho_b, seen.rho_f);
-        let e = brdf_study(s, exchanged, at_o, at_i, mean, split, depth, particle, shares);
-        let h = btdf_study(through, turned, exchanged, at_o, at_i, s.eta);
+        let other = Ways(ways.capture, ways.path_o, ways.path_i);
+        let e = brdf_study(s, exchanged, at_o, at_i, mean, split, depth, other, particle, shares);
+        let h = btdf_study(through, turned, at_o, at_i, mean, ways.path_o, ways.path_i, s.eta);
         found[to + 12u] = e.x; found[to + 13u] = e.y; found[to + 14u] = e.z;
         found[to + 15u] = h.x; found[to + 16u] = h.y; found[to + 17u] = h.z;",
         film.len(),
