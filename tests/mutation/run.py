@@ -21,6 +21,7 @@ tests/mutation/survivors.md explains those that are left.
 
 import argparse
 import csv
+import json
 import math
 import os
 import random
@@ -253,6 +254,17 @@ def cargo(crate, env, target, *more):
     return run([*command, *more], env, crate)
 
 
+def executable(crate, env, target):
+    """Of a built test."""
+    _, output = cargo(crate, env, target, "--no-run", "--message-format=json")
+    for line in output.splitlines():
+        if line.startswith("{"):
+            message = json.loads(line)
+            if message.get("executable") and message["target"]["name"] == target[-1]:
+                return message["executable"]
+    sys.exit(f"cargo built no {target[-1]}:\n{output[-2000:]}")
+
+
 def arguments_of(target):
     if target == ["--test", "parity"]:
         return ["--", "every_function_at_a_million_extremes"]
@@ -260,12 +272,18 @@ def arguments_of(target):
     return ["--", *skips]
 
 
+PARITY = None
+
+
 def judge_wgsl(mutant, work, crate, env):
     folder = work / "mutant"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     (folder / Path(mutant[0]).name).write_text(applied(mutant))
-    code, output = cargo(crate, env, ["--test", "parity"], *arguments_of(["--test", "parity"]))
+    global PARITY
+    parity = ["--test", "parity"]
+    PARITY = PARITY or executable(crate, env, parity)
+    code, output = run([PARITY, *arguments_of(parity)[1:]], env, crate)
     if code == 0:
         return "survived", ""
     if "Shader" in output and ("parsing error" in output or "Validation Error" in output
