@@ -637,8 +637,9 @@ pub fn compare_inner_cosines(gpu: &Gpu, physics: &str) -> Result<f64, String> {
 }
 
 pub fn compare_ink(gpu: &Gpu, physics: &str) -> Result<f64, String> {
-    let films = compare_each(&films_crossed(), gpu, physics, |x| {
-        let twins = (films_crossed().twin)(x);
+    let films = films_crossed();
+    let films = compare_each(&films, gpu, physics, |x| {
+        let twins = (films.twin)(x);
         let exponent = path_rounding(x);
         std::array::from_fn::<_, 7, _>(|k| twins[k] * exponent)
     })?;
