@@ -93,7 +93,7 @@ fn traps_2_and_4_quotients_are_guarded_before_they_are_taken() {
         rho_f: all,
         rho_b: all,
     };
-    assert_eq!(crossing(&through, &seen, 1.0, 1.0, N), none);
+    assert_eq!(crossing(&through, &seen, 1.0, all, N), none);
 }
 
 #[test]

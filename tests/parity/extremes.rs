@@ -13,7 +13,7 @@ use recto::{
             Film, beyond_capture, capture_path, inner_cosine, internal_reflectance, optical_depth,
         },
         microfacet::v_hammon,
-        refraction::{PathTable, crossed, mean_inner_cosine},
+        refraction::{PathTable, crossed, mean_inner_cosine, steeper_by},
         relief::{SHORTENING_NOISE, march_reach, mean_length, rise_of, slope_variance, widened},
         slab::Phase,
         study::{
@@ -134,10 +134,10 @@ fn films_crossed() -> Twins {
         format!("vec4({})", each.join(", "))
     };
     Twins {
-        name: "beyond_capture, crossed, mean_inner_cosine",
+        name: "beyond_capture, crossed, mean_inner_cosine, steeper_by",
         body: format!(
             "let capture = {} + {}; let path_i = {}; let path_o = {};
-            {} {} found[to + 6u] = mean_inner_cosine(path_i);",
+            {} {} {} found[to + 9u] = mean_inner_cosine(path_i);",
             four(3),
             four(7),
             four(11),
@@ -147,13 +147,16 @@ fn films_crossed() -> Twins {
                 &format!("beyond_capture({}, capture, path_i, path_o)", vector(0))
             ),
             colours(3, &format!("crossed(path_i, {})", vector(0))),
+            colours(6, &format!("steeper_by(path_i, {})", vector(0))),
         ),
         twin: |x| {
             let four = |i: usize| DVec4::from_slice(&x[i..]);
             let (tau, capture) = (DVec3::from_slice(x), four(3) + four(7));
             let beyond = beyond_capture(tau, capture, four(11), four(15)).to_array();
             let through = crossed(four(11), tau).to_array();
-            [&beyond[..], &through, &[mean_inner_cosine(four(11))]].concat()
+            let steeper = steeper_by(four(11), tau).to_array();
+            let mean = mean_inner_cosine(four(11));
+            [&beyond[..], &through, &steeper, &[mean]].concat()
         },
         relative: |_| RELATIVE,
         cases: cases(21, |seeded| {
@@ -165,18 +168,18 @@ fn films_crossed() -> Twins {
     }
 }
 
-/// What the terms of a path are rounded by, times the depth: the exponent's error.
-fn path_rounding(x: &[f64]) -> f64 {
+/// What the terms of a path are rounded by, times the depth (the exponent's error) and alone.
+fn path_rounding(x: &[f64]) -> (f64, f64) {
     let terms: f64 = x[3..19].iter().map(|c| c.abs()).sum();
     let deepest = x[..3].iter().copied().fold(0.0, f64::max);
-    terms * UNIT_PRODUCT * (1.0 + deepest)
+    (terms * UNIT_PRODUCT * (1.0 + deepest), terms * UNIT_PRODUCT)
 }
 
 fn through_of(x: &[f64]) -> (Through, Seen) {
     let v = |i: usize| DVec3::from_slice(&x[i..]);
     let through = Through {
         reflected: v(0),
-        inner_mean: 0.0,
+        inner_mean: x[22],
         transmitted: v(3),
         ballistic: DVec3::ZERO,
         reflected_leaning: v(6),
@@ -200,7 +203,7 @@ fn crossings() -> Twins {
         name: "crossing",
         body: format!(
             "let none = vec3(0.0);
-            let through = Through({}, 0.0, {}, none, {}, {}, none, none);
+            let through = Through({}, given[at + 22u], {}, none, {}, {}, none, none);
             let seen = Seen(none, given[at + 18u], none, {}, {});
             {}",
             vector(0),
@@ -211,12 +214,12 @@ fn crossings() -> Twins {
             vector(15),
             colours(
                 0,
-                "crossing(through, seen, given[at + 19u], given[at + 20u], given[at + 21u])"
+                "crossing(through, seen, given[at + 19u], vec3(given[at + 20u]), given[at + 21u])"
             ),
         ),
         twin: |x| {
             let (through, seen) = through_of(x);
-            let crossed = crossing(&through, &seen, x[19], x[20], x[21]);
+            let crossed = crossing(&through, &seen, x[19], DVec3::splat(x[20]), x[21]);
             crossed.to_array().to_vec()
         },
         relative: |_| RELATIVE,
@@ -235,6 +238,7 @@ fn crossings() -> Twins {
             }));
             case.extend([seeded.log_or_zero(1e-2, 1e3), share(), share()]);
             case.push(1.0 + seeded.log(1e-2, 2.0));
+            case.push(share());
             case
         }),
     }
@@ -250,7 +254,7 @@ fn crossing_rounding(x: &[f64]) -> f64 {
     let passes = ((1.0 - r * f) * (1.0 - r * b) - t * t * f * b).max(DVec3::splat(1e-6));
     let leaning = (through.transmitted_leaning + through.reflected_leaning) * seen.clear;
     let terms = through.reflected + through.transmitted + 4.0 * leaning;
-    let crossed = crossing(&through, &seen, x[19], x[20], x[21]);
+    let crossed = crossing(&through, &seen, x[19], DVec3::splat(x[20]), x[21]);
     let rounded = terms / (x[21] * x[21] * passes) + crossed / passes;
     rounded.max_element() * 2.0 * UNIT_PRODUCT
 }
@@ -640,8 +644,11 @@ pub fn compare_ink(gpu: &Gpu, physics: &str) -> Result<f64, String> {
     let films = films_crossed();
     let films = compare_each(&films, gpu, physics, |x| {
         let twins = (films.twin)(x);
-        let exponent = path_rounding(x);
-        std::array::from_fn::<_, 7, _>(|k| twins[k] * exponent)
+        let (exponent, path) = path_rounding(x);
+        std::array::from_fn::<_, 10, _>(|k| match k {
+            0..6 => twins[k] * exponent,
+            _ => path,
+        })
     })?;
     let crossed = crossings().compare_rounded(gpu, physics, crossing_rounding)?;
     Ok(films.max(crossed))
