@@ -295,7 +295,8 @@ struct Film {
 }
 
 fn inner_cosine(mu: f32, eta: f32) -> f32 {
-    return sqrt(max(1.0 - max(1.0 - mu * mu, 0.0) / (eta * eta), 0.0));
+    // 1 − (1 − μ²)/n² would cancel at grazing angles where n is near 1.
+    return sqrt(max((eta - 1.0) * (eta + 1.0) + mu * mu, 0.0)) / eta;
 }
 
 fn optical_depth(film: Film, capture: vec4<f32>, share: vec3<f32>) -> vec3<f32> {

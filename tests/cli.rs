@@ -4,6 +4,10 @@
 mod bsdf;
 #[path = "cli/commands.rs"]
 mod commands;
+#[path = "cli/masks.rs"]
+mod masks;
+#[path = "cli/missing.rs"]
+mod missing;
 #[path = "cli/render.rs"]
 mod render;
 

@@ -10,6 +10,8 @@ mod show_through;
 
 #[path = "frames/baselines.rs"]
 mod baselines;
+#[path = "frames/capture.rs"]
+mod capture;
 #[path = "frames/colour.rs"]
 mod colour;
 #[path = "frames/lamps.rs"]
@@ -22,3 +24,5 @@ mod media;
 mod relief;
 #[path = "frames/sheets.rs"]
 mod sheets;
+#[path = "frames/strange.rs"]
+mod strange;

@@ -3,6 +3,16 @@
 //! The walk's results stand in `fixtures/judged.csv`, with mean and variance; the ignored test
 //! `bake` writes them: `cargo test --release --test judged -- --ignored bake`.
 
+#[path = "judged/energy.rs"]
+mod energy;
+#[path = "judged/measured.rs"]
+mod measured;
+#[path = "support/rgl.rs"]
+mod rgl;
+mod support;
+#[path = "judged/traps.rs"]
+mod traps;
+
 use std::{
     collections::HashMap,
     f64::consts::{PI, TAU},

@@ -4,9 +4,12 @@ use std::path::PathBuf;
 
 use super::{
     Failure, output,
-    report::{Refused, Report},
+    report::{PhotographReport, Refused, Report},
 };
-use crate::manifest::{Exhibit, Faults};
+use crate::{
+    manifest::{Exhibit, Faults, capture::Mask},
+    maps::encode,
+};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -18,13 +21,28 @@ pub struct Arguments {
     /// Say all of it as JSON
     #[arg(long)]
     json: bool,
+    /// Write a mask of each photograph into this folder: black where a sheet lit and seen as it
+    /// was photographed gives it back, grey where the photograph is darker than what the surface
+    /// mirrors, white where it is clipped or lighter than any sheet
+    #[arg(long, value_name = "DIR")]
+    masks: Option<PathBuf>,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(folder) = &arguments.masks {
+        output::can_write_folder(folder)?;
+    }
     match report(arguments) {
-        Ok(report) if arguments.json => output::result(json(&report)?),
-        Ok(report) if arguments.explain => output::result(format_args!("{report:#}")),
-        Ok(report) => output::result(report),
+        Ok((report, masks)) => {
+            if let Some(folder) = &arguments.masks {
+                output::make_folder(folder)?;
+                for (name, Mask { size, codes }) in &masks {
+                    let file = folder.join(name).with_added_extension("png");
+                    encode::save_png_grey8(&file, size[0], size[1], codes, None)?;
+                }
+            }
+            say(arguments, &report)
+        }
         Err(faults) => {
             if arguments.json {
                 output::result(json(&Refused::new(&faults))?)?;
@@ -34,12 +52,33 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn report(arguments: &Arguments) -> Result<Report, Faults> {
+fn say(arguments: &Arguments, report: &Report) -> Result<(), Failure> {
+    match report {
+        report if arguments.json => output::result(json(report)?),
+        report if arguments.explain => output::result(format_args!("{report:#}")),
+        report => output::result(report),
+    }
+}
+
+/// What is to be said, and the masks by name where they are asked for.
+fn report(arguments: &Arguments) -> Result<(Report, Vec<(String, Mask)>), Faults> {
     let (exhibit, mut warnings) = Exhibit::read(&arguments.exhibit)?;
     // Those that no scene needs today are still part of the exhibit.
     warnings.extend(exhibit.verify(exhibit.maps())?);
     super::warn(&warnings);
-    Ok(Report::new(&exhibit, warnings))
+    let mut photographs = Vec::new();
+    let mut masks = Vec::new();
+    for photograph in exhibit.photographs() {
+        let path = &photograph.albedo.file.path;
+        let mask = photograph
+            .mask()
+            .map_err(|error| Faults::from(exhibit.map_fault(path, &error)))?;
+        photographs.push(PhotographReport::new(&exhibit, &photograph, &mask));
+        if arguments.masks.is_some() {
+            masks.push((photograph.name(), mask));
+        }
+    }
+    Ok((Report::new(&exhibit, warnings, photographs), masks))
 }
 
 fn json(value: &impl serde::Serialize) -> Result<String, Failure> {

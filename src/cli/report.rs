@@ -14,7 +14,9 @@ use serde::Serialize;
 use crate::{
     colour,
     manifest::{
-        Accuracy, Exhibit, Fault, Faults, Scene, SideName, Source, exhibit::LampKind,
+        Accuracy, Exhibit, Fault, Faults, Scene, SideName, Source,
+        capture::{self, Mask, Photograph},
+        exhibit::LampKind,
         lighting::light_table_lux,
     },
     needs::Needs,
@@ -50,11 +52,40 @@ pub struct Report {
     pub drawings: usize,
     pub tours: usize,
     pub warnings: Vec<Fault>,
+    pub photographs: Vec<PhotographReport>,
     pub tier: &'static str,
     pub scenes: Vec<SceneReport>,
     pub sources: Vec<SourceReport>,
     pub not_shown_yet: Vec<String>,
     pub accuracy: AccuracyReport,
+}
+
+/// What of a photograph no sheet of its paper gives back.
+#[derive(Clone, Debug, Serialize)]
+pub struct PhotographReport {
+    pub drawing: String,
+    pub side: SideName,
+    pub state: Option<String>,
+    pub file: PathBuf,
+    pub pixels: u64,
+    /// Pixels darker than what the surface itself mirrors.
+    pub too_dark: u64,
+    /// Pixels that are clipped, or lighter than any sheet.
+    pub saturated: u64,
+}
+
+impl PhotographReport {
+    pub fn new(exhibit: &Exhibit, photograph: &Photograph<'_>, mask: &Mask) -> Self {
+        Self {
+            drawing: photograph.drawing.id.clone(),
+            side: photograph.side,
+            state: photograph.state.map(str::to_owned),
+            file: relative(exhibit, &photograph.albedo.file.path),
+            pixels: mask.codes.len() as u64,
+            too_dark: mask.count(capture::TOO_DARK),
+            saturated: mask.count(capture::SATURATED),
+        }
+    }
 }
 
 /// What one scene requires.
@@ -119,7 +150,11 @@ pub struct AccuracyReport {
 
 impl Report {
     /// Of an exhibit that was read with `warnings`.
-    pub fn new(exhibit: &Exhibit, warnings: Vec<Fault>) -> Self {
+    pub fn new(
+        exhibit: &Exhibit,
+        warnings: Vec<Fault>,
+        photographs: Vec<PhotographReport>,
+    ) -> Self {
         let Accuracy {
             max_delta_e,
             frame_ms,
@@ -130,6 +165,7 @@ impl Report {
             drawings: exhibit.drawings.len(),
             tours: exhibit.tours.len(),
             warnings,
+            photographs,
             tier: TIER.name(),
             scenes: exhibit
                 .scenes
@@ -296,6 +332,11 @@ impl Display for Report {
             }
             f.write_str("\n")?;
         }
+        for photograph in &self.photographs {
+            if f.alternate() || photograph.too_dark + photograph.saturated > 0 {
+                write!(f, "\n{photograph}")?;
+            }
+        }
         write!(
             f,
             "\nAccuracy asked for: ΔE00 {} within {} ms a frame. {}",
@@ -308,6 +349,31 @@ impl Display for Report {
             write!(f, "\n  {sentence}")?;
         }
         Ok(())
+    }
+}
+
+impl Display for PhotographReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let share = |count: u64| {
+            let share = 100.0 * count as f64 / self.pixels.max(1) as f64;
+            format!("{count} pixels ({share:.2}%)")
+        };
+        write!(
+            f,
+            "Photograph {} ({}",
+            self.file.display(),
+            self.side.word()
+        )?;
+        if let Some(state) = &self.state {
+            write!(f, ", {state}")?;
+        }
+        write!(
+            f,
+            "): {} darker than what the paper's surface mirrors, {} clipped or lighter than any \
+             sheet; gallery and study do not give them back (--masks shows where)",
+            share(self.too_dark),
+            share(self.saturated)
+        )
     }
 }
 

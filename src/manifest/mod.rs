@@ -8,10 +8,12 @@
 //! | the same declarations → JSON Schema | [`schema()`] |
 //! | plain data → [`Exhibit`], with files, references and units | `validate` |
 //! | what is wrong, where, and what to do | [`Fault`], [`Faults`] |
+//! | a photograph → which of its pixels no sheet gives back | [`capture`] |
 //! | a starting manifest from one picture | [`create`] |
 //! | a lamp or camera in one line | `overrides::spec` |
 //! | a scene changed by options of a command | [`overrides`] |
 
+pub mod capture;
 mod create;
 mod decode;
 mod document;

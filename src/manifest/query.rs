@@ -88,31 +88,22 @@ impl Exhibit {
     fn verify_file(&self, path: &Path) -> Result<Vec<Words>, maps::MapError> {
         let name = self.name_of(path);
         let mut warnings = Vec::new();
-        let mut replaced = None;
+        let mut missing = None;
         let encodings = self.drawings.iter().flat_map(Drawing::colour_maps);
         for (_, encoding) in encodings.filter(|(file, _)| file.path == path) {
-            replaced = Some(maps::verify_colour(path, encoding)?);
+            missing = Some(maps::verify_colour(path, encoding)?);
         }
         let legends = self.drawings.iter().flat_map(Drawing::legends);
         for (_, legend) in legends.filter(|(file, _)| file.path == path) {
-            let (count, unlisted) = maps::verify_legend(path, &legend)?;
-            replaced = Some(count);
+            let (found, unlisted) = maps::verify_legend(path, &legend)?;
+            missing = Some(found);
             warnings.extend(unlisted_words(&name, &unlisted, &legend));
         }
-        let replaced = match replaced {
-            Some(count) => count,
+        let missing = match missing {
+            Some(missing) => missing,
             None => maps::verify(path)?,
         };
-        if replaced > 0 {
-            warnings.push(Words::new(
-                format!(
-                    "{}, in which {replaced} values are not finite",
-                    quote(&name)
-                ),
-                "numbers, and 0 is read in place of others",
-                "export it again without NaN and infinities",
-            ));
-        }
+        warnings.extend(missing_words(&name, &missing));
         Ok(warnings)
     }
 
@@ -278,6 +269,34 @@ impl Drawing {
 
 /// What to say of colours, the commonest first, that a legend does not name. White and black
 /// ones are taken for the ground that the others lie on.
+/// Pixels without a number.
+fn missing_words(name: &str, missing: &maps::Missing) -> Option<Words> {
+    let mut places: Vec<String> = missing
+        .places
+        .iter()
+        .map(|[column, row]| format!("({column}, {row})"))
+        .collect();
+    let more = missing.count - places.len() as u64;
+    if more > 0 {
+        places.push(format!("{more} more"));
+    }
+    (missing.count > 0).then(|| {
+        let plural = if missing.count == 1 { "" } else { "s" };
+        Words::new(
+            format!(
+                "{} with NaN or infinity in {} pixel{plural} (column, row from 0 at the top \
+                 left): {}",
+                quote(name),
+                missing.count,
+                places.join(", ")
+            ),
+            "numbers",
+            "export it again without NaN and infinities; such pixels are missing and are shown \
+             as their nearest neighbours",
+        )
+    })
+}
+
 fn unlisted_words(name: &str, unlisted: &[([u8; 3], u64)], legend: &[[u8; 3]]) -> Option<Words> {
     /// How many colours are named.
     const MOST: usize = 3;

@@ -61,7 +61,7 @@ mod tests {
                 height,
                 texels: Texels::Unorm16(values),
             }],
-            replaced: 0,
+            missing: 0,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{ColourEncoding, MapError, decode, linear::Linear};
+use super::{ColourEncoding, MapError, Missing, decode, linear::Linear};
 
 /// What a picture's header says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,21 +32,21 @@ pub fn probe(path: &Path) -> Result<Header, MapError> {
     Ok(decode::Picture::open(path)?.header())
 }
 
-/// Decodes the whole file and discards it, which finds truncated and damaged bodies. Returns how
-/// many values were NaN or infinite, which every loader replaces by 0.
+/// Decodes the whole file and discards it, which finds truncated and damaged bodies. Returns the
+/// pixels that are missing, which every loader fills.
 ///
 /// # Errors
 /// As [`probe`], and [`MapError::Damaged`].
-pub fn verify(path: &Path) -> Result<u64, MapError> {
-    Ok(decode::Picture::open(path)?.decode()?.replaced)
+pub fn verify(path: &Path) -> Result<Missing, MapError> {
+    Ok(decode::Picture::open(path)?.decode()?.missing)
 }
 
 /// Does the same for a map of colour, and finds colour profiles that cannot be used.
 ///
 /// # Errors
 /// As [`verify`], and [`MapError::Profile`].
-pub fn verify_colour(path: &Path, encoding: ColourEncoding) -> Result<u64, MapError> {
+pub fn verify_colour(path: &Path, encoding: ColourEncoding) -> Result<Missing, MapError> {
     let raster = decode::Picture::open(path)?.decode()?;
     Linear::new(path, &raster, encoding)?;
-    Ok(raster.replaced)
+    Ok(raster.missing)
 }

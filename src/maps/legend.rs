@@ -5,7 +5,7 @@ use std::{collections::HashMap, path::Path};
 use rayon::prelude::*;
 
 use super::{
-    ColourMapName, MapError, Pyramid,
+    ColourMapName, MapError, Missing, Pyramid,
     decode::{Picture, Raster, Samples},
     load::{decode, finish},
     pyramid,
@@ -53,14 +53,15 @@ pub fn load_media_legend(path: &Path, legend: &[[u8; 3]]) -> Result<LegendMap, M
     })
 }
 
-/// Decodes a picture that a legend reads, which finds damaged ones, and discards it. Returns how
-/// many values were NaN or infinite, and what [`LegendMap::unlisted`] says.
+/// Decodes a picture that a legend reads, which finds damaged ones, and discards it. Returns
+/// the pixels that are missing, and what [`LegendMap::unlisted`] says.
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn verify_legend(path: &Path, legend: &[[u8; 3]]) -> Result<(u64, ColourCounts), MapError> {
+pub fn verify_legend(path: &Path, legend: &[[u8; 3]]) -> Result<(Missing, ColourCounts), MapError> {
     let raster = decode(path)?;
-    Ok((raster.replaced, unlisted(&raster, legend)))
+    let unlisted = unlisted(&raster, legend);
+    Ok((raster.missing, unlisted))
 }
 
 /// Loads a map of media whose first `count` channels are the coverage of one medium each; unused

@@ -36,6 +36,26 @@ pub fn load_colour(path: &Path, encoding: ColourEncoding) -> Result<Pyramid, Map
     ))
 }
 
+/// Reads a map of colour as [`load_colour`] does, without levels and without narrowing: gives each
+/// row, from the top, to `each` as linear sRGB; the fourth channel means nothing.
+///
+/// # Errors
+/// As [`super::verify`].
+pub fn for_each_colour_row(
+    path: &Path,
+    encoding: ColourEncoding,
+    mut each: impl FnMut(usize, &[[f32; 4]]),
+) -> Result<(), MapError> {
+    let raster = decode(path)?;
+    let linear = Linear::new(path, &raster, encoding)?;
+    let mut row = vec![[0.0; 4]; raster.width];
+    for y in 0..raster.height {
+        linear.row(y, &mut row);
+        each(y, &row);
+    }
+    Ok(())
+}
+
 /// Loads a picture to lay over a side: linear sRGB multiplied by its alpha; otherwise as
 /// [`load_colour`].
 ///
@@ -236,7 +256,7 @@ pub(super) fn decode(path: &Path) -> Result<Raster, MapError> {
 
 pub(super) fn finish(raster: &Raster, pyramid: Pyramid) -> Pyramid {
     Pyramid {
-        replaced: raster.replaced,
+        missing: raster.missing.count,
         ..pyramid
     }
 }

@@ -212,7 +212,11 @@ impl<'l, T: Copy + Sync> Stack<'l, T> {
 
     fn finish(&self, pyramid: Pyramid) -> Pyramid {
         Pyramid {
-            replaced: self.layers.iter().map(|layer| layer.raster.replaced).sum(),
+            missing: self
+                .layers
+                .iter()
+                .map(|layer| layer.raster.missing.count)
+                .sum(),
             ..pyramid
         }
     }

@@ -24,6 +24,7 @@ mod legend;
 mod linear;
 mod load;
 mod matter;
+mod missing;
 mod pyramid;
 pub mod registration;
 mod slope;
@@ -39,13 +40,14 @@ pub use legend::{
     load_overlay_categorical, load_overlay_continuous, verify_legend,
 };
 pub use load::{
-    Coding, load_colour, load_height, load_normal, load_outline, load_overlay_picture,
-    load_roughness, normal_coding,
+    Coding, for_each_colour_row, load_colour, load_height, load_normal, load_outline,
+    load_overlay_picture, load_roughness, normal_coding,
 };
 pub use matter::{
     MAX_PARTICLES, MatterPart, MatterSlot, MediaChannels, MediaLayer, load_matter,
     load_roughness_of_matter,
 };
+pub use missing::Missing;
 pub use pyramid::{Level, Pyramid, Texels};
 pub use slope::load_normal_from_height;
 

@@ -79,8 +79,8 @@ pub struct Pyramid {
     pub channels: u8,
     /// From full size to 1 × 1; each side is half of the one before, rounded down, at least 1.
     pub levels: Vec<Level>,
-    /// How many values of the file were NaN or infinite and became 0.
-    pub replaced: u64,
+    /// How many pixels of the file are missing ([`super::Missing`]).
+    pub missing: u64,
 }
 
 /// A stored value.
@@ -154,7 +154,7 @@ pub(super) fn build<T: Texel, const C: usize, const N: usize>(
     Pyramid {
         channels: N as u8,
         levels,
-        replaced: 0,
+        missing: 0,
     }
 }
 

@@ -35,9 +35,8 @@ const DEPTH_STEPS: u32 = 4;
 
 /// Cosine inside a medium of index `eta` of a ray at cosine `mu` outside: μ′.
 pub fn inner_cosine(mu: f64, eta: f64) -> f64 {
-    (1.0 - (1.0 - mu * mu).max(0.0) / (eta * eta))
-        .max(0.0)
-        .sqrt()
+    // 1 − (1 − μ²)/n² would cancel, in f32, at grazing angles where n is near 1.
+    ((eta - 1.0) * (eta + 1.0) + mu * mu).max(0.0).sqrt() / eta
 }
 
 /// Films over one paper, in fitted form.

@@ -195,6 +195,7 @@ fn direction(mu: f64) -> DVec3 {
 
 /// E₂: the share of the light that arrives from the air at cosine `mu` and leaves into it after it
 /// has met two facets or more, in [0, 1], by `walks` walks; few of them end so.
+#[cfg(test)]
 pub(super) fn sent_back_late(mu: f64, alpha: f64, n: f64, walks: u32) -> f64 {
     if alpha < ALPHA_SMOOTH || n - 1.0 < INDEX_MATCHED {
         return 0.0;
@@ -282,6 +283,7 @@ impl Numbers {
 struct End {
     in_air: bool,
     cosine: f64,
+    #[cfg(test)]
     meetings: u32,
 }
 
@@ -319,6 +321,7 @@ fn walk(w: DVec3, mut in_air: bool, alpha: f64, n: f64, mut numbers: Numbers) ->
     End {
         in_air,
         cosine: d.z.max(1e-3),
+        #[cfg(test)]
         meetings,
     }
 }

@@ -105,7 +105,7 @@ mod tests {
                 height: 1,
                 texels: Texels::Unorm16(vec![0, 65535]),
             }],
-            replaced: 0,
+            missing: 0,
         };
         let exact = map_image(pyramid(), 1, true);
         assert_eq!(exact.texture_descriptor.format, TextureFormat::R16Unorm);

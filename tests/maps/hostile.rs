@@ -119,7 +119,7 @@ fn the_unharmed_files_load() {
     for (name, bytes) in VALID.iter() {
         let path = write(&folder, bytes);
         assert_eq!(probe(&path).expect(name).size, [WIDTH, HEIGHT]);
-        assert_eq!(verify(&path).expect(name), 0);
+        assert_eq!(verify(&path).expect(name).count, 0);
     }
 }
 

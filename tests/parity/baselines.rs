@@ -4,8 +4,8 @@ use recto::{optics::baselines::*, sheet::PAPER_BASELINES};
 
 use super::*;
 
-fn physics() -> String {
-    format!("{PAPER_BSDF}\n{PAPER_BASELINES}")
+pub fn physics() -> String {
+    format!("{}\n{}", bsdf(), gpu::baselines())
 }
 
 /// sin², or 1 − cos, from what f32 can hardly tell from 0 up to both ends.
@@ -113,19 +113,24 @@ fn baselines() -> Vec<Twins> {
     }
 }
 
-#[test]
-fn helpers_and_baselines() {
-    let gpu = Gpu::new();
+/// The function or baseline of this name.
+pub fn compare(name: &str, gpu: &Gpu, physics: &str) -> Result<f64, String> {
+    let mut twins = helpers().into_iter().chain(baselines());
+    let twins = twins.find(|twins| twins.name == name).expect(name);
+    twins.compare(gpu, physics)
+}
+
+pub fn judge_baselines(gpu: &Gpu) {
     let faults: Vec<String> = helpers()
         .into_iter()
         .chain(baselines())
-        .filter_map(|twins| twins.compare(&gpu, &physics()).err())
+        .filter_map(|twins| twins.compare(gpu, &physics()).err())
         .collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-#[test]
-fn eyes_off_the_mirrored_light() {
+/// Eyes off the mirrored light.
+pub fn judge_off_mirror(gpu: &Gpu) {
     let cases: Vec<Vec<f32>> = facing_cases();
     let twins = Twins {
         name: "off_mirror",
@@ -140,9 +145,9 @@ fn eyes_off_the_mirrored_light() {
         relative: |_| RELATIVE,
         cases,
     };
-    let found = twins.found(&Gpu::new(), &physics());
-    let pairs: Vec<Pair> = twins
-        .cases
+    let found = twins.found(gpu, &physics());
+    let cases = twins.cases(gpu);
+    let pairs: Vec<Pair> = cases
         .iter()
         .zip(&found)
         .map(|(case, &found)| {
@@ -154,12 +159,12 @@ fn eyes_off_the_mirrored_light() {
             pair
         })
         .collect();
-    judge(twins.name, &pairs, |i| format!("{:?}", twins.cases[i])).unwrap();
+    judge(twins.name, &pairs, |i| format!("{:?}", cases[i])).unwrap();
 }
 
 #[test]
 fn broken_baselines_are_found() {
-    let gpu = Gpu::new();
+    let gpu = Gpu::sampling(BROKEN);
     for (name, sound, wrong) in [
         ("power_below_one", "x < 0.5);", "x < 0.0);"),
         ("angle_squared", "16.0 * t * (1.0 + series)", "16.0 * t"),
@@ -176,13 +181,8 @@ fn broken_baselines_are_found() {
             PAPER_BASELINES.contains(sound),
             "{sound} is not in the shader"
         );
-        let text = physics().replace(sound, wrong);
-        let twins = helpers().into_iter().chain(baselines());
-        let twins = twins
-            .into_iter()
-            .find(|twins| twins.name == name)
-            .expect(name);
-        let outcome = twins.compare(&gpu, &text);
+        let text = format!("{PAPER_BSDF}\n{}", PAPER_BASELINES.replace(sound, wrong));
+        let outcome = compare(name, &gpu, &text);
         assert!(outcome.is_err(), "{name}: {wrong} passed: {outcome:?}");
     }
 }

@@ -15,9 +15,13 @@ use recto::{
     sheet::uniform::{FilmUniform, SplitUniform, ThroughUniform},
 };
 
-fn conductors() -> Twins {
+pub fn conductors() -> Twins {
     let seeded = Seeded::new(11);
-    let n = || seeded.log(1e-2, 6.0);
+    // Air as well.
+    let n = || match seeded.bits() % 8 {
+        0 => 1.0,
+        _ => seeded.log(1e-2, 6.0),
+    };
     let k = || seeded.log_or_zero(1e-4, 20.0);
     Twins {
         name: "fresnel_conductor",
@@ -64,18 +68,19 @@ fn anisotropic() -> Twins {
     }
 }
 
-#[test]
-fn facets_of_metal_and_of_combed_paper() {
-    let gpu = Gpu::new();
-    conductors().compare(&gpu, PAPER_BSDF).unwrap();
+pub fn compare_anisotropic(gpu: &Gpu, physics: &str) -> Result<f64, String> {
     // 1 − x² − y² of a half vector cancels towards grazing, as in f64 only later.
-    anisotropic()
-        .compare_rounded(&gpu, PAPER_BSDF, |x| {
-            let d = d_ggx_anisotropic(x[0], x[1], x[6], x[7]);
-            let grazing = (x[0] / x[6]).hypot(x[1] / x[7]).powi(2).max(1e-6);
-            4.0 * d * UNIT_PRODUCT / grazing
-        })
-        .unwrap();
+    anisotropic().compare_rounded(gpu, physics, |x| {
+        let d = d_ggx_anisotropic(x[0], x[1], x[6], x[7]);
+        let grazing = (x[0] / x[6]).hypot(x[1] / x[7]).powi(2).max(1e-6);
+        4.0 * d * UNIT_PRODUCT / grazing
+    })
+}
+
+/// Facets of metal and of combed paper.
+pub fn judge_facets(gpu: &Gpu) {
+    conductors().compare(gpu, bsdf()).unwrap();
+    compare_anisotropic(gpu, bsdf()).unwrap();
 }
 
 fn places_and_paths() -> Twins {
@@ -106,13 +111,10 @@ fn places_and_paths() -> Twins {
     }
 }
 
-#[test]
-fn paths_between_nodes() {
+pub fn compare_paths(gpu: &Gpu, physics: &str) -> Result<f64, String> {
     // The root of the least roughness is taken from those of others.
     const ROOTS: f64 = 4e-6;
-    places_and_paths()
-        .compare_rounded(&Gpu::new(), PAPER_BSDF, |_| ROOTS)
-        .unwrap();
+    places_and_paths().compare_rounded(gpu, physics, |_| ROOTS)
 }
 
 /// Papers at the extremes: index, roughness, bare albedo, σs, thickness in mm, phase.
@@ -156,6 +158,7 @@ fn papers() -> Vec<(String, Surface, InterfaceMean, Study)> {
 const NUMBERS: usize = 29;
 /// Where a case's paths begin.
 const PATHS: usize = 17;
+const OUTPUTS: usize = 15;
 
 fn spots(paper: &Surface, study: &Study) -> Vec<Vec<f32>> {
     let seeded = Seeded::new(13);
@@ -296,10 +299,13 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
 }
 
 /// Compares the study tier with `physics`, for the paper of this number.
-fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String> {
+pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String> {
     let (name, paper, mean, study) = papers().swap_remove(number);
     let (film, constants) = constants(&study);
-    let cases = spots(&paper, &study);
+    let cases: Vec<Vec<f32>> = spots(&paper, &study)
+        .into_iter()
+        .step_by(gpu.every)
+        .collect();
     let path = |i: usize| {
         let at = |k: usize| format!("given[at + {}u]", PATHS + 4 * i + k);
         format!("vec4({}, {}, {}, {})", at(0), at(1), at(2), at(3))
@@ -325,7 +331,16 @@ fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String>
         let c = btdf_study(through, seen, at_i, at_o, mean, ways.path_i, ways.path_o, s.eta);
         found[to] = a.x; found[to + 1u] = a.y; found[to + 2u] = a.z;
         found[to + 3u] = b.x; found[to + 4u] = b.y; found[to + 5u] = b.z;
-        found[to + 6u] = c.x; found[to + 7u] = c.y; found[to + 8u] = c.z;",
+        found[to + 6u] = c.x; found[to + 7u] = c.y; found[to + 8u] = c.z;
+        // Light and eye exchanged, and the sheet turned over with them.
+        let exchanged = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h);
+        let turned = Seen(seen.depth_b, seen.clear, seen.depth_f, seen.rho_b, seen.rho_f);
+        let other = Ways(ways.capture, ways.path_o, ways.path_i);
+        let e = brdf_study(
+            s, exchanged, at_o, at_i, mean, split, depth, other, lit, given[at + 16u]);
+        let h = btdf_study(through, turned, at_o, at_i, mean, ways.path_o, ways.path_i, s.eta);
+        found[to + 9u] = e.x; found[to + 10u] = e.y; found[to + 11u] = e.z;
+        found[to + 12u] = h.x; found[to + 13u] = h.y; found[to + 14u] = h.z;",
         film.len(),
         literal(paper.alpha),
         literal(paper.eta),
@@ -336,11 +351,11 @@ fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String>
         literal(mean.capture),
         literal(mean.floor),
     );
-    let text = format!("{physics}\n{}", entry("f32", cases.len(), 9, &body));
+    let text = format!("{physics}\n{}", entry("f32", cases.len(), OUTPUTS, &body));
     let given = [film, cases.concat()].concat();
-    let found = gpu.run(&text, &given, cases.len(), 9);
-    let mut pairs = Vec::new();
-    for (case, found) in cases.iter().zip(found.chunks(9)) {
+    let found = gpu.run(&text, &given, cases.len(), OUTPUTS);
+    let (mut pairs, mut ways) = (Vec::new(), Vec::new());
+    for (case, found) in cases.iter().zip(found.chunks(OUTPUTS)) {
         let x = widen(case);
         let expected = spot(&x, &paper, &mean, &study);
         let terms =
@@ -355,29 +370,35 @@ fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String>
                 .g_forward
                 .max(-study.split.phase.g_backward);
         let peak = 3.0 * UNIT_PRODUCT / (narrow * narrow);
-        for (k, &gpu) in found.iter().enumerate() {
+        for (there, back) in (0..3).chain(6..9).zip(9..OUTPUTS) {
+            ways.push(Pair::new(found[back], found[there].into(), RECIPROCITY));
+        }
+        for (k, &gpu) in found[..9].iter().enumerate() {
             let mut pair = Pair::new(gpu, expected[k / 3][k % 3], RELATIVE);
             let diffuse = diffuse + peak * pair.cpu;
             pair.allowed += [diffuse, 0.0, 0.0][k / 3];
             pairs.push(pair);
         }
     }
-    judge(&name, &pairs, |i| {
+    let either = judge(&format!("{name}: exchanged"), &ways, |i| {
+        format!("{:?}, output {}", cases[i / 6], i % 6)
+    })?;
+    let alike = judge(&name, &pairs, |i| {
         format!("{:?}, output {}", cases[i / 9], i % 9)
-    })
+    })?;
+    Ok(either.max(alike))
 }
 
-#[test]
-fn ink_and_light_through_the_sheet() {
-    let gpu = Gpu::new();
+/// Ink and light through the sheet.
+pub fn judge_study(gpu: &Gpu) {
     for number in 0..papers().len() {
-        compare_study(&gpu, PAPER_BSDF, number).unwrap();
+        compare_study(gpu, bsdf(), number).unwrap();
     }
 }
 
 #[test]
 fn a_broken_study_is_found() {
-    let gpu = Gpu::new();
+    let gpu = Gpu::sampling(BROKEN);
     for (sound, wrong) in [
         (
             "let path = path_i + path_o - capture;",

@@ -1,9 +1,51 @@
 //! Runs shader text in compute passes, compiled as Bevy compiles it.
 
-use std::borrow::Cow;
+use std::{
+    borrow::Cow,
+    cell::{Cell, RefCell},
+    sync::LazyLock,
+};
 
-use recto::device::NoDevice;
+use recto::{
+    device::NoDevice,
+    sheet::{PAPER_BASELINES, PAPER_BSDF},
+};
 
+/// Where the mutation run (tests/mutation/run.py) lays a file of this name in place of a shader.
+const MUTANTS: &str = "RECTO_MUTANTS";
+
+/// The shipped text, or the mutant of it that is to be caught.
+fn judged(name: &str, shipped: &'static str) -> Cow<'static, str> {
+    let Some(folder) = std::env::var_os(MUTANTS) else {
+        return shipped.into();
+    };
+    // One failure is enough.
+    std::panic::set_hook(Box::new(|panic| {
+        eprintln!("{panic}");
+        std::process::exit(101);
+    }));
+    let path = std::path::Path::new(&folder).join(name);
+    match std::fs::read_to_string(path) {
+        Ok(text) => text.into(),
+        Err(_) => shipped.into(),
+    }
+}
+
+/// The text of paper_bsdf.wgsl.
+pub fn bsdf() -> &'static str {
+    static TEXT: LazyLock<Cow<str>> = LazyLock::new(|| judged("paper_bsdf.wgsl", PAPER_BSDF));
+    &TEXT
+}
+
+/// The text of paper_baselines.wgsl.
+pub fn baselines() -> &'static str {
+    static TEXT: LazyLock<Cow<str>> =
+        LazyLock::new(|| judged("paper_baselines.wgsl", PAPER_BASELINES));
+    &TEXT
+}
+
+/// How an entry point begins.
+const ENTRY: &str = "@group(0) @binding(0)";
 /// Threads in a workgroup.
 const WORKGROUP: u32 = 64;
 
@@ -11,6 +53,12 @@ const WORKGROUP: u32 = 64;
 pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    /// Of how many prepared inputs one is run.
+    pub every: usize,
+    /// Inputs so far.
+    tuples: Cell<usize>,
+    /// Entry points so far.
+    asked: RefCell<String>,
 }
 
 impl Gpu {
@@ -27,11 +75,49 @@ impl Gpu {
             .unwrap_or_else(|_| panic!("{NoDevice}"));
         let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))
             .unwrap_or_else(|error| panic!("{error}"));
-        Self { device, queue }
+        Self {
+            device,
+            queue,
+            // What is wrong in one case in a few is wrong enough to be caught.
+            every: if std::env::var_os(MUTANTS).is_some() {
+                8
+            } else {
+                1
+            },
+            tuples: Cell::default(),
+            asked: RefCell::default(),
+        }
+    }
+
+    /// The same for a share of the inputs: enough to see what is plainly broken.
+    pub fn sampling(every: usize) -> Self {
+        Self {
+            every,
+            ..Self::new()
+        }
+    }
+
+    /// How many inputs were run.
+    pub fn tuples(&self) -> usize {
+        self.tuples.get()
+    }
+
+    /// Whether an entry point called the function of this name itself.
+    pub fn has_called(&self, function: &str) -> bool {
+        let asked = self.asked.borrow();
+        let is_name = |c: char| c.is_alphanumeric() || c == '_';
+        asked.match_indices(function).any(|(at, _)| {
+            let after = asked[at + function.len()..].trim_start();
+            !asked[..at].ends_with(is_name) && after.starts_with('(')
+        })
     }
 
     /// Runs the entry point [`entry`] wrote for `cases` inputs; returns `outputs` numbers each.
     pub fn run(&self, text: &str, given: &[f32], cases: usize, outputs: usize) -> Vec<f32> {
+        self.tuples.set(self.tuples.get() + cases);
+        if let Some(at) = text.find(ENTRY) {
+            self.asked.borrow_mut().push_str(&text[at..]);
+        }
         let descriptor = wgpu::ShaderModuleDescriptor {
             label: None,
             source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)),
@@ -102,7 +188,7 @@ impl Gpu {
 /// `element`; `index` is the input's number, and `found[to + k]` takes output k of `outputs`.
 pub fn entry(element: &str, cases: usize, outputs: usize, body: &str) -> String {
     format!(
-        "@group(0) @binding(0) var<storage, read> given: array<{element}>;
+        "{ENTRY} var<storage, read> given: array<{element}>;
         @group(0) @binding(1) var<storage, read_write> found: array<f32>;
         @compute @workgroup_size({WORKGROUP})
         fn parity(@builtin(global_invocation_id) id: vec3<u32>) {{

@@ -19,7 +19,7 @@ use exr::{
 };
 use glam::{DMat3, Mat3, Vec3};
 
-use super::{Header, MapError, Raster, Samples, check_memory, check_size, plausible_dpi};
+use super::{Header, MapError, Missing, Raster, Samples, check_memory, check_size, plausible_dpi};
 use crate::colour;
 
 pub(in super::super) struct ExrPicture {
@@ -155,9 +155,9 @@ impl ExrPicture {
             Ok(())
         };
         chunks.decompress_parallel(false, insert).map_err(refused)?;
-        let (mut samples, replaced) = Samples::finite(values);
-        if let (Some(matrix), Samples::F32(values)) = (to_srgb, &mut samples) {
-            for pixel in values.chunks_exact_mut(count) {
+        if let Some(matrix) = to_srgb {
+            let sound = |pixel: &&mut [f32]| pixel.iter().all(|value| value.is_finite());
+            for pixel in values.chunks_exact_mut(count).filter(sound) {
                 // Finite times finite may still overflow.
                 let rgb = (matrix * Vec3::from_slice(pixel)).clamp(Vec3::MIN, Vec3::MAX);
                 rgb.write_to_slice(pixel);
@@ -167,10 +167,10 @@ impl ExrPicture {
             width,
             height,
             channels: count,
-            samples,
+            samples: Samples::F32(values),
             premultiplied: true,
             icc: None,
-            replaced,
+            missing: Missing::default(),
         })
     }
 }

@@ -14,7 +14,8 @@ use zune_core::{
 use zune_jpeg::JpegDecoder;
 
 use super::{
-    Header, MAX_SIDE, MapError, Orientation, Raster, Samples, check_memory, check_size, exif,
+    Header, MAX_SIDE, MapError, Missing, Orientation, Raster, Samples, check_memory, check_size,
+    exif,
 };
 
 pub(in super::super) struct JpegPicture {
@@ -100,7 +101,7 @@ impl JpegPicture {
             samples: Samples::U8(samples),
             premultiplied: false,
             icc: decoder.icc_profile(),
-            replaced: 0,
+            missing: Missing::default(),
         })
     }
 }

@@ -12,7 +12,7 @@ use std::{
     path::Path,
 };
 
-use super::{Header, MAX_SIDE, MapError};
+use super::{Header, MAX_SIDE, MapError, Missing};
 pub(super) use exif::Orientation;
 
 /// The most memory that one decoded picture may take, in bytes.
@@ -29,11 +29,11 @@ pub(super) struct Raster {
     pub premultiplied: bool,
     /// The embedded ICC profile.
     pub icc: Option<Vec<u8>>,
-    /// How many NaN or infinite values were replaced by 0.
-    pub replaced: u64,
+    /// Pixels in which a value was NaN or infinite.
+    pub missing: Missing,
 }
 
-/// Channel values; floats are finite.
+/// Channel values; floats are finite once the picture is decoded.
 pub(super) enum Samples {
     U8(Vec<u8>),
     U16(Vec<u16>),
@@ -146,18 +146,6 @@ impl Raster {
     }
 }
 
-impl Samples {
-    /// Floats with NaN and infinities replaced by 0, and how many there were.
-    fn finite(mut values: Vec<f32>) -> (Self, u64) {
-        let mut replaced = 0;
-        for value in values.iter_mut().filter(|v| !v.is_finite()) {
-            *value = 0.0;
-            replaced += 1;
-        }
-        (Self::F32(values), replaced)
-    }
-}
-
 /// A picture file, opened and its header read.
 pub(super) enum Picture {
     Png(Box<png::PngPicture>),
@@ -207,22 +195,27 @@ impl Picture {
         orientation.of_header(header)
     }
 
+    /// The upright picture, its missing pixels filled.
     pub fn decode(self) -> Result<Raster, MapError> {
-        match self {
+        let mut raster = match self {
             Self::Png(picture) => {
                 let orientation = picture.orientation;
-                Ok(orientation.of_raster(picture.decode()?))
+                orientation.of_raster(picture.decode()?)
             }
             Self::Jpeg(picture) => {
                 let orientation = picture.orientation;
-                Ok(orientation.of_raster(picture.decode()?))
+                orientation.of_raster(picture.decode()?)
             }
             Self::Tiff(picture) => {
                 let orientation = picture.orientation;
-                Ok(orientation.of_raster(picture.decode()?))
+                orientation.of_raster(picture.decode()?)
             }
-            Self::Exr(picture) => picture.decode(),
+            Self::Exr(picture) => picture.decode()?,
+        };
+        if let Samples::F32(values) = &mut raster.samples {
+            raster.missing = Missing::fill(values, raster.width, raster.channels);
         }
+        Ok(raster)
     }
 }
 

@@ -5,7 +5,8 @@ use std::{fs::File, io::BufReader, path::PathBuf};
 use png::{BitDepth, DecodingError, Limits, Transformations, Unit};
 
 use super::{
-    Header, MapError, Orientation, Raster, Samples, check_memory, check_size, exif, plausible_dpi,
+    Header, MapError, Missing, Orientation, Raster, Samples, check_memory, check_size, exif,
+    plausible_dpi,
 };
 
 /// For chunks beside the pixels (profile, EXIF, text) and single rows.
@@ -92,7 +93,7 @@ impl PngPicture {
             samples,
             premultiplied: false,
             icc,
-            replaced: 0,
+            missing: Missing::default(),
         })
     }
 }

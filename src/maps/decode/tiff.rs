@@ -14,7 +14,8 @@ use tiff::{
 };
 
 use super::{
-    Header, MAX_BYTES, MapError, Orientation, Raster, Samples, check_memory, check_size, exif,
+    Header, MAX_BYTES, MapError, Missing, Orientation, Raster, Samples, check_memory, check_size,
+    exif,
 };
 
 pub(in super::super) struct TiffPicture {
@@ -134,18 +135,18 @@ impl TiffPicture {
             .map_err(|error| refused(path, error))?;
         let [width, height] = self.header.size.map(|v| v as usize);
         let channels = usize::from(self.header.channels);
-        let (samples, replaced) = match result {
+        let samples = match result {
             DecodingResult::U8(v) if self.stored_bits < 8 => {
-                (Samples::U8(unpack(&v, width, self.stored_bits)), 0)
+                Samples::U8(unpack(&v, width, self.stored_bits))
             }
-            DecodingResult::U8(v) => (Samples::U8(self.chunky(v)), 0),
-            DecodingResult::U16(v) => (Samples::U16(self.chunky(v)), 0),
+            DecodingResult::U8(v) => Samples::U8(self.chunky(v)),
+            DecodingResult::U16(v) => Samples::U16(self.chunky(v)),
             DecodingResult::F16(v) => {
-                Samples::finite(self.chunky(v.into_iter().map(f32::from).collect()))
+                Samples::F32(self.chunky(v.into_iter().map(f32::from).collect()))
             }
-            DecodingResult::F32(v) => Samples::finite(self.chunky(v)),
+            DecodingResult::F32(v) => Samples::F32(self.chunky(v)),
             DecodingResult::F64(v) => {
-                Samples::finite(self.chunky(v.into_iter().map(|v| v as f32).collect()))
+                Samples::F32(self.chunky(v.into_iter().map(|v| v as f32).collect()))
             }
             _ => {
                 return Err(MapError::damaged(
@@ -172,7 +173,7 @@ impl TiffPicture {
             samples,
             premultiplied: self.premultiplied,
             icc: self.icc,
-            replaced,
+            missing: Missing::default(),
         })
     }
 
