@@ -155,7 +155,9 @@ fn rounding_of_albedos(x: &[f64]) -> f64 {
     let open = (1.0 - cover[1] - cover[2]).max(0.0);
     let expected = covered + colour(x, 3) * open;
     let told = (colour(x, 3) / expected.max(DVec3::splat(1e-6))).max_element();
-    4.0 * terms * UNIT_PRODUCT * (1.0 + told)
+    // So it is against what body colour lets through.
+    let passes = open + 1e-6 + cover[1] * colour(x, 6).min_element();
+    4.0 * terms * UNIT_PRODUCT * (1.0 + told) + UNIT_PRODUCT / passes
 }
 
 fn particles() -> Twins {
