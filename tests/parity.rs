@@ -1,7 +1,11 @@
 //! The shipped physics on the graphics device against its f64 twins, at the extremes of every
 //! parameter. The twins get the f32 inputs widened, so that only the arithmetic differs.
 
-use std::{cell::Cell, f64::consts::PI, sync::Arc};
+use std::{
+    cell::Cell,
+    f64::consts::PI,
+    sync::{Arc, LazyLock},
+};
 
 use bevy::render::render_resource::{
     ShaderType,
@@ -368,6 +372,12 @@ fn brdf_inputs(x: &[f64]) -> BrdfInputs {
 }
 
 fn brdf_cases() -> Vec<Vec<f32>> {
+    // A dozen functions are asked the same.
+    static CASES: LazyLock<Vec<Vec<f32>>> = LazyLock::new(draw_brdf_cases);
+    CASES.clone()
+}
+
+fn draw_brdf_cases() -> Vec<Vec<f32>> {
     let seeded = Seeded::new(1);
     (0..200_000)
         .map(|_| {

@@ -267,7 +267,7 @@ def executable(crate, env, target):
 
 def arguments_of(target):
     if target == ["--test", "parity"]:
-        return ["--", "every_function_at_a_million_extremes"]
+        return ["--", "every_function_at_a_million_extremes", "--nocapture"]
     skips = [f"--skip={name}" for name in SLOW]
     return ["--", *skips]
 
