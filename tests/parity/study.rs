@@ -9,7 +9,7 @@ use recto::{
         microfacet::{d_ggx_anisotropic, v_smith_anisotropic},
         refraction::{PathTable, path_alpha, path_between, path_mu},
         slab::{Phase, Slab},
-        study::{Seen, Study, Ways, brdf_study, btdf_study, through_study},
+        study::{Seen, Study, Ways, brdf_study, brdf_study_diffuse, btdf_study, through_study},
         tier::albedo_of,
     },
     sheet::uniform::{FilmUniform, SplitUniform, ThroughUniform},
@@ -158,7 +158,7 @@ fn papers() -> Vec<(String, Surface, InterfaceMean, Study)> {
 const NUMBERS: usize = 29;
 /// Where a case's paths begin.
 const PATHS: usize = 17;
-const OUTPUTS: usize = 15;
+const OUTPUTS: usize = 18;
 
 fn spots(paper: &Surface, study: &Study) -> Vec<Vec<f32>> {
     let seeded = Seeded::new(13);
@@ -184,7 +184,7 @@ fn spots(paper: &Surface, study: &Study) -> Vec<Vec<f32>> {
 
 /// All that the study tier computes for a spot: reflected, from a light table, from a lamp
 /// behind.
-fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVec3; 3] {
+fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVec3; 4] {
     let g = Facing {
         mu_i: x[0],
         mu_o: x[1],
@@ -234,6 +234,7 @@ fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVe
             ways.path_o,
             s.eta,
         ),
+        brdf_study_diffuse(&s, &g, &at_i, &at_o, mean, split, depth, &ways, lit),
     ]
 }
 
@@ -334,13 +335,15 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
         found[to + 6u] = c.x; found[to + 7u] = c.y; found[to + 8u] = c.z;
         // Light and eye exchanged, and the sheet turned over with them.
         let exchanged = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h);
+        let d = brdf_study_diffuse(s, g, at_i, at_o, mean, split, depth, ways, lit);
+        found[to + 9u] = d.x; found[to + 10u] = d.y; found[to + 11u] = d.z;
         let turned = Seen(seen.depth_b, seen.clear, seen.depth_f, seen.rho_b, seen.rho_f);
         let other = Ways(ways.capture, ways.path_o, ways.path_i);
         let e = brdf_study(
             s, exchanged, at_o, at_i, mean, split, depth, other, lit, given[at + 16u]);
         let h = btdf_study(through, turned, at_o, at_i, mean, ways.path_o, ways.path_i, s.eta);
-        found[to + 9u] = e.x; found[to + 10u] = e.y; found[to + 11u] = e.z;
-        found[to + 12u] = h.x; found[to + 13u] = h.y; found[to + 14u] = h.z;",
+        found[to + 12u] = e.x; found[to + 13u] = e.y; found[to + 14u] = e.z;
+        found[to + 15u] = h.x; found[to + 16u] = h.y; found[to + 17u] = h.z;",
         film.len(),
         literal(paper.alpha),
         literal(paper.eta),
@@ -370,13 +373,13 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
                 .g_forward
                 .max(-study.split.phase.g_backward);
         let peak = 3.0 * UNIT_PRODUCT / (narrow * narrow);
-        for (there, back) in (0..3).chain(6..9).zip(9..OUTPUTS) {
+        for (there, back) in (0..3).chain(6..9).zip(12..OUTPUTS) {
             ways.push(Pair::new(found[back], found[there].into(), RECIPROCITY));
         }
-        for (k, &gpu) in found[..9].iter().enumerate() {
+        for (k, &gpu) in found[..12].iter().enumerate() {
             let mut pair = Pair::new(gpu, expected[k / 3][k % 3], RELATIVE);
             let diffuse = diffuse + peak * pair.cpu;
-            pair.allowed += [diffuse, 0.0, 0.0][k / 3];
+            pair.allowed += [diffuse, 0.0, 0.0, diffuse][k / 3];
             pairs.push(pair);
         }
     }
@@ -384,7 +387,7 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
         format!("{:?}, output {}", cases[i / 6], i % 6)
     })?;
     let alike = judge(&name, &pairs, |i| {
-        format!("{:?}, output {}", cases[i / 9], i % 9)
+        format!("{:?}, output {}", cases[i / 12], i % 12)
     })?;
     Ok(either.max(alike))
 }
