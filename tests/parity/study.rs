@@ -118,7 +118,14 @@ pub fn compare_paths(gpu: &Gpu, physics: &str) -> Result<f64, String> {
 }
 
 /// Papers at the extremes: index, roughness, bare albedo, σs, thickness in mm, phase.
-fn papers() -> Vec<(String, Surface, InterfaceMean, Study)> {
+type Paper = (String, Surface, InterfaceMean, Study);
+
+fn papers() -> &'static [Paper] {
+    static PAPERS: LazyLock<Vec<Paper>> = LazyLock::new(make_papers);
+    &PAPERS
+}
+
+fn make_papers() -> Vec<Paper> {
     let phases = [[1.0, 0.33, 0.0], [0.5, 0.99, -0.99], [0.0, 0.0, 0.0]];
     [
         (1.5, 0.6, DVec3::new(0.8, 0.7, 0.55), 81.38, 0.165),
@@ -160,9 +167,9 @@ const NUMBERS: usize = 29;
 const PATHS: usize = 17;
 const OUTPUTS: usize = 18;
 
-fn spots(paper: &Surface, study: &Study) -> Vec<Vec<f32>> {
+fn spots(paper: &Surface, study: &Study, count: usize) -> Vec<Vec<f32>> {
     let seeded = Seeded::new(13);
-    (0..100_000)
+    (0..count)
         .map(|_| {
             let share = || seeded.log_or_zero(1e-6, 1.0);
             let cosine = || seeded.log(1e-4, 1.0);
@@ -301,12 +308,9 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
 
 /// Compares the study tier with `physics`, for the paper of this number.
 pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, String> {
-    let (name, paper, mean, study) = papers().swap_remove(number);
-    let (film, constants) = constants(&study);
-    let cases: Vec<Vec<f32>> = spots(&paper, &study)
-        .into_iter()
-        .step_by(gpu.every)
-        .collect();
+    let (name, paper, mean, study) = &papers()[number];
+    let (film, constants) = constants(study);
+    let cases = spots(paper, study, 100_000 / gpu.every);
     let path = |i: usize| {
         let at = |k: usize| format!("given[at + {}u]", PATHS + 4 * i + k);
         format!("vec4({}, {}, {}, {})", at(0), at(1), at(2), at(3))
@@ -360,9 +364,9 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
     let (mut pairs, mut ways) = (Vec::new(), Vec::new());
     for (case, found) in cases.iter().zip(found.chunks(OUTPUTS)) {
         let x = widen(case);
-        let expected = spot(&x, &paper, &mean, &study);
+        let expected = spot(&x, paper, mean, study);
         let terms =
-            x[8].max(x[9]).max(x[10]) + capture_floor(&paper, &mean) + study.bare.max_element();
+            x[8].max(x[9]).max(x[10]) + capture_floor(paper, mean) + study.bare.max_element();
         // What the rounding of differences of albedos costs: diffusely, and in the lobe.
         let diffuse = terms * UNIT_PRODUCT * (1.0 + x[4] * x[6] * mean.capture) / PI;
         // A deflection's cosine is rounded, and the narrowest lobes are (1 − |g|)² wide.
@@ -386,7 +390,7 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
     let either = judge(&format!("{name}: exchanged"), &ways, |i| {
         format!("{:?}, output {}", cases[i / 6], i % 6)
     })?;
-    let alike = judge(&name, &pairs, |i| {
+    let alike = judge(name, &pairs, |i| {
         format!("{:?}, output {}", cases[i / 12], i % 12)
     })?;
     Ok(either.max(alike))
