@@ -84,6 +84,16 @@ impl Unknown {
         }
     }
 
+    /// Its derivative by the step.
+    fn rate(self, step: f64) -> f64 {
+        let share = step / Curve::STEPS as f64;
+        let power = match self {
+            Self::SigmaA => 4.0 * share * share * share,
+            Self::TauF => 2.0 * share,
+        };
+        self.most() * power / Curve::STEPS as f64
+    }
+
     fn set(self, around: &Absorption, value: f64) -> Absorption {
         match self {
             Self::SigmaA => Absorption {
@@ -287,18 +297,40 @@ impl Capture {
     }
 
     fn curve(&self, unknown: Unknown, around: &Absorption) -> Curve {
-        let ln_albedo = (0..=Curve::STEPS)
+        let knots = (0..=Curve::STEPS)
             .map(|step| {
-                let absorption = unknown.set(around, unknown.at(step as f64));
-                let (body, _) = self.body(&absorption, unknown);
-                body.max(f64::MIN_POSITIVE).ln()
+                let step = step as f64;
+                let absorption = unknown.set(around, unknown.at(step));
+                let (body, slope) = self.body(&absorption, unknown);
+                let body = body.max(f64::MIN_POSITIVE);
+                Knot {
+                    ln_albedo: body.ln(),
+                    slope: slope / body * unknown.rate(step),
+                }
             })
             .collect();
         Curve {
             unknown,
             floor: self.floor.mean,
-            ln_albedo,
+            knots,
         }
+    }
+}
+
+/// Logarithm of the body's albedo at a step, and its derivative by the step.
+#[derive(Clone, Copy)]
+struct Knot {
+    ln_albedo: f64,
+    slope: f64,
+}
+
+impl Knot {
+    /// Between two knots, at `share` of the way: the cubic that has both slopes (Hermite).
+    fn towards(&self, next: &Self, share: f64) -> f64 {
+        let back = 1.0 - share;
+        let rise = next.ln_albedo - self.ln_albedo;
+        let bend = back * (self.slope - rise) + share * (rise - next.slope);
+        self.ln_albedo + share * (rise + back * bend)
     }
 }
 
@@ -306,18 +338,18 @@ impl Capture {
 pub struct Curve {
     unknown: Unknown,
     floor: f64,
-    /// Of the body at each step, falling.
-    ln_albedo: Vec<f64>,
+    /// Falling.
+    knots: Vec<Knot>,
 }
 
 impl Curve {
-    const STEPS: usize = 512;
+    const STEPS: usize = 96;
 
     /// The optical depth or absorption that shows `albedo`: as [`Capture::solve_tau`] and
     /// [`Capture::solve_sigma_a`] within 10⁻⁴.
     pub fn solve(&self, albedo: f64) -> Solved {
         let wanted = (albedo - self.floor).max(0.0).ln();
-        let above = self.ln_albedo.partition_point(|&ln| ln > wanted);
+        let above = self.knots.partition_point(|knot| knot.ln_albedo > wanted);
         if albedo.is_nan() || above > Self::STEPS {
             return Solved {
                 value: self.unknown.most(),
@@ -325,19 +357,32 @@ impl Curve {
             };
         }
         if above == 0 {
-            let bound = if wanted > self.ln_albedo[0] {
+            let bound = if wanted > self.knots[0].ln_albedo {
                 Bound::AboveLossless
             } else {
                 Bound::Inside
             };
             return Solved { value: 0.0, bound };
         }
-        let (high, low) = (self.ln_albedo[above - 1], self.ln_albedo[above]);
-        let share = (high - wanted) / (high - low);
-        let (from, to) = (above as f64 - 1.0, above as f64);
-        let (from, to) = (self.unknown.at(from), self.unknown.at(to));
+        let (from, to) = (&self.knots[above - 1], &self.knots[above]);
+        // The curve falls between the knots; regula falsi, kept lively (Illinois), finds where.
+        let (mut low, mut high) = (0.0, 1.0);
+        let (mut f_low, mut f_high) = (from.ln_albedo - wanted, to.ln_albedo - wanted);
+        let mut share = 0.0;
+        for _ in 0..40 {
+            share = low + (high - low) * f_low / (f_low - f_high);
+            let f = from.towards(to, share) - wanted;
+            if f.abs() < 1e-10 {
+                break;
+            }
+            if f > 0.0 {
+                (low, f_low, f_high) = (share, f, 0.5 * f_high);
+            } else {
+                (high, f_high, f_low) = (share, f, 0.5 * f_low);
+            }
+        }
         Solved {
-            value: from + share * (to - from),
+            value: self.unknown.at((above - 1) as f64 + share),
             bound: Bound::Inside,
         }
     }

@@ -9,8 +9,9 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    radiance::{Lamp, Scenery},
+    radiance::{Lamp, Lighting, Scenery},
     rng::{Rng, exponential, uniform},
+    statistics::{Estimate, Sums},
     walk::{Face, Layers, facing},
 };
 
@@ -320,4 +321,32 @@ impl LateralWalker {
             }
         }
     }
+}
+
+/// Radiance per channel in the direction `view` (away from the sheet, a unit vector), with the
+/// variance of its mean over `samples` walks that begin at the place 0: [`super::radiance`] with
+/// light that leaves elsewhere than it entered. `lighting` as there.
+pub fn radiance(
+    layers: &Layers,
+    sigma_a: [f64; 3],
+    inks: &impl Inks,
+    view: DVec3,
+    lighting: &Lighting<3>,
+    samples: u64,
+    rng: &mut Rng,
+) -> [Estimate; 3] {
+    let mut sums = [Sums::default(); 3];
+    let mut walker = LateralWalker::default();
+    let scenery = Scenery {
+        lamps: lighting.lamps,
+        before: [0.0; 3],
+        behind: lighting.table,
+    };
+    for _ in 0..samples {
+        let radiance = walker.sample(layers, sigma_a, inks, view, &scenery, rng);
+        for (sums, radiance) in sums.iter_mut().zip(radiance) {
+            sums.add(radiance);
+        }
+    }
+    sums.map(|sums| sums.estimate(samples))
 }
