@@ -12,7 +12,7 @@ use crate::{
     manifest::exhibit::Scene,
     maps::encode,
     optics::tier::Tier,
-    reference::picture::{self, CAPTURE_PATHS, Crop, Exposure, Mode, PictureError, Plate, Studio},
+    reference::picture::{self, Crop, Exposure, Mode, PictureError, Plate, Studio},
     shot::Picture,
 };
 
@@ -147,11 +147,16 @@ fn walk(commission: &Commission, scene: &Scene, exposure: &Exposure) -> Result<P
     let bar = output::progress(u64::from(width) * u64::from(height));
     bar.set_message(format!("{}: the photograph undone", scene.id));
     bar.tick();
-    let studio =
-        Studio::new(exhibit, scene, CAPTURE_PATHS, exposure.seed).map_err(|error| match error {
-            PictureError::Map(error) => Failure::from(error),
-            PictureError::Layers(error) => Failure::Input(error.into()),
-        })?;
+    let studio = Studio::new(
+        exhibit,
+        scene,
+        picture::capture_paths(exposure.samples),
+        exposure.seed,
+    )
+    .map_err(|error| match error {
+        PictureError::Map(error) => Failure::from(error),
+        PictureError::Layers(error) => Failure::Input(error.into()),
+    })?;
     bar.set_message(scene.id.clone());
     let plate = studio.take(exposure, || bar.inc(1));
     bar.finish_and_clear();

@@ -75,7 +75,7 @@ fn bad_arguments_are_refused_in_words_and_nothing_is_written() {
     let out = sheet.out("x.exr");
     for (options, words) in [
         (["--samples", "0"], "from 1 to"),
-        (["--samples", "-3"], "from 1 to"),
+        (["--samples", "1.5"], "from 1 to"),
         (["--crop", "10,0,7,4"], "16 × 12 pixels"),
         (["--crop", "0,0,4294967295,1"], "16 × 12 pixels"),
         (["--crop", "4294967295,0,1,1"], "16 × 12 pixels"),

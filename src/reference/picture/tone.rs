@@ -34,18 +34,18 @@ pub(super) struct Tones {
 }
 
 impl Tones {
-    /// Of sheets `layers(α)` whose bare spots photograph as `bare` at the roughness `alpha`, for
+    /// Of sheets `layers(α)` whose bare spots photograph as `bare` at the roughness `own_alpha`, for
     /// roughness within `range`.
     pub fn new(
         layers: impl Fn(f64) -> Layers,
-        alpha: f64,
+        own_alpha: f64,
         bare: [f64; 3],
         [least, most]: [f64; 2],
         paths: u64,
         seed: u64,
     ) -> Self {
         let at = |alpha: f64| Capture::new(&layers(alpha), paths, seed);
-        let own = at(alpha);
+        let own = at(own_alpha);
         let bare_sigma_a = bare.map(|albedo| own.solve_sigma_a(albedo).value);
         let steps = if most - least < ALPHA_SAME {
             0
@@ -56,7 +56,13 @@ impl Tones {
             .map(|step| {
                 let share = step as f64 / steps.max(1) as f64;
                 let alpha = least + (most - least) * share;
-                let capture = at(alpha);
+                let fresh;
+                let capture = if (alpha - own_alpha).abs() < ALPHA_SAME {
+                    &own
+                } else {
+                    fresh = at(alpha);
+                    &fresh
+                };
                 let papers = bare_sigma_a.map(|sigma_a| Absorption {
                     sigma_a,
                     ..Absorption::NONE
