@@ -30,6 +30,7 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
             "optics::lamp::Shape",
             "optics::medium::BodyConstants",
             "optics::medium::Matter",
+            "optics::medium::ParticleConstants",
             "optics::microfacet::d_ggx",
         ],
     ),

@@ -345,6 +345,11 @@ pub struct Curve {
 impl Curve {
     const STEPS: usize = 96;
 
+    /// The albedo that the surface alone shows.
+    pub fn floor(&self) -> f64 {
+        self.floor
+    }
+
     /// The optical depth or absorption that shows `albedo`: as [`Capture::solve_tau`] and
     /// [`Capture::solve_sigma_a`] within 10⁻⁴.
     pub fn solve(&self, albedo: f64) -> Solved {

@@ -1,10 +1,13 @@
 //! What lies on a place of a side: film, body colour, grains, paper; and how a photograph is
 //! divided between them.
 //!
-//! Grains cover a share of a place, opaque, and paper with or without ink shows between them. The
-//! photograph is the paper's as far as bare paper can explain it, and the grains' beyond that:
-//! first what their facets mirror, then what tarnish and binder scatter evenly. Fresh metal would
-//! often photograph brighter than a stroke does; then so much less of it is there.
+//! Grains and body colour cover shares of a place, and paper with or without ink shows between
+//! them. The photograph of a place is theirs in proportion to what the manifest's constants say
+//! each would photograph as; where ink lies, it takes from the paper alone what is missing. (This
+//! is how a manifest is read, and every renderer reads it so.) Of a grain's own photograph, a share
+//! of its area mirrors as facets of its matter do, as large as the photograph leaves room for: no
+//! more than it shows, and no less than leaves a rest that reflects all. The rest scatters evenly,
+//! as tarnish and binder do.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -14,7 +17,7 @@ use super::{PictureError, field::Field};
 use crate::{
     manifest::exhibit::{Exhibit, MediaContent, MediaMap, Side},
     maps::{self, MAX_PARTICLES, MatterPart, MatterSlot, MediaChannels, MediaLayer},
-    optics::medium::{BodyConstants, Matter},
+    optics::medium::{BodyConstants, Matter, ParticleConstants},
     reference::{
         conductor::Conductor,
         rng::{Rng, stream, uniform},
@@ -23,6 +26,8 @@ use crate::{
 
 /// Sorts of grains in the first texture of shares.
 const GRAINS_OF_FIRST: usize = 2;
+/// Shares and albedos are divided by no less.
+const LEAST: f64 = 1e-6;
 /// Towards the lamp of reproduction photography.
 const LAMP: DVec3 = DVec3::new(FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2);
 
@@ -53,6 +58,8 @@ pub(super) struct Grain {
 struct Sort {
     facets: Conductor,
     captured: [f64; 3],
+    /// Of the whole grain, as the manifest has it.
+    albedo: [f64; 3],
 }
 
 pub(super) struct Media {
@@ -110,10 +117,7 @@ impl Media {
         let sorts = grains
             .iter()
             .filter_map(|&grain| match matter(grain) {
-                Matter::Particles(of) => {
-                    let facets = Conductor::new(of.roughness, of.n, of.k);
-                    Some(Sort::new(facets, paths, seed))
-                }
+                Matter::Particles(of) => Some(Sort::new(&of, paths, seed)),
                 _ => None,
             })
             .collect();
@@ -139,66 +143,79 @@ impl Media {
         }
     }
 
-    /// Divides the photograph of a place: the albedo of what lies between its grains, where
-    /// `bare` is that of bare paper; and a grain where chance picks one.
+    /// Divides the photograph of a place. `bare` is that of bare paper, of which the surface
+    /// alone shows `floor`.
     pub fn divided(
         &self,
         shares: &Shares,
         albedo: [f64; 3],
         bare: [f64; 3],
+        floor: f64,
         rng: &mut Rng,
-    ) -> ([f64; 3], Option<Grain>) {
+    ) -> Divided {
         let covered = shares.covered();
-        if covered <= 0.0 {
-            return (albedo, None);
+        let open = (1.0 - covered - shares.body).max(0.0);
+        let body = self.body.map_or([0.0; 3], |body| body.albedo);
+        let film = (shares.film / open.max(LEAST)).clamp(0.0, 1.0);
+        let mut divided = Divided {
+            paper: [0.0; 3],
+            body: [0.0; 3],
+            grain: None,
+        };
+        let (mut scale, mut lit) = ([0.0; 3], [0.0; 3]);
+        for c in 0..3 {
+            let lit_body = (body[c] - floor).max(0.0);
+            lit[c] = (albedo[c] - floor * (1.0 - covered)).max(0.0);
+            let grains = self.sorts.iter().zip(shares.grains);
+            let grains = grains.map(|(sort, share)| sort.albedo[c] * share);
+            let hidden = lit_body * shares.body + grains.sum::<f64>();
+            let even = lit[c] / ((bare[c] - floor) * open + hidden).max(LEAST);
+            let inked = (lit[c] / hidden.max(LEAST)).min(1.0);
+            scale[c] = even + (inked - even).max(0.0) * film;
+            divided.body[c] = lit_body * scale[c] + floor;
+            divided.paper[c] = (lit[c] - hidden * scale[c]).max(0.0) / open.max(LEAST) + floor;
         }
-        let between = beside(shares, albedo, bare);
-        let mut choice = uniform(rng);
-        let Some(sort) = self
-            .sorts
-            .iter()
-            .zip(shares.grains)
-            .find_map(|(sort, share)| {
+        if covered > 0.0 {
+            let mut choice = uniform(rng);
+            let sort = self.sorts.iter().zip(shares.grains).find(|(_, share)| {
                 choice -= share;
-                (choice < 0.0).then_some(sort)
-            })
-        else {
-            return (between, None);
-        };
-        let mut mirrored = [0.0; 3];
-        for (sort, share) in self.sorts.iter().zip(shares.grains) {
-            for c in 0..3 {
-                mirrored[c] += sort.captured[c] * share / covered;
-            }
+                choice < 0.0
+            });
+            divided.grain = sort.map(|(sort, _)| sort.grain(scale, lit));
         }
-        // What the grains alone photograph as.
-        let grains: [f64; 3] = std::array::from_fn(|c| {
-            ((albedo[c] - between[c] * (1.0 - covered)) / covered).max(0.0)
-        });
-        let gloss = (0..3)
-            .map(|c| grains[c] / mirrored[c].max(1e-9))
-            .fold(1.0, f64::min);
-        let grain = Grain {
-            facets: sort.facets,
-            gloss,
-            diffuse: std::array::from_fn(|c| (grains[c] - gloss * mirrored[c]).max(0.0)),
-        };
-        (between, Some(grain))
+        divided
     }
 }
 
-/// The albedo of what lies between the grains of a place: the photograph as far as paper, `bare`
-/// at most, explains it.
-pub(super) fn beside(shares: &Shares, albedo: [f64; 3], bare: [f64; 3]) -> [f64; 3] {
-    let open = 1.0 - shares.covered();
-    if open >= 1.0 {
-        return albedo;
-    }
-    std::array::from_fn(|c| (albedo[c] / open.max(1e-9)).min(bare[c]))
+/// The photograph of a place, divided: the albedo of what lies between its grains, and a grain
+/// where chance picks one.
+pub(super) struct Divided {
+    pub paper: [f64; 3],
+    pub body: [f64; 3],
+    pub grain: Option<Grain>,
 }
 
 impl Sort {
-    fn new(facets: Conductor, paths: u64, seed: u64) -> Self {
+    /// A grain whose constant albedo is to be multiplied by `scale`, at a place that photographs
+    /// as `lit`.
+    fn grain(&self, scale: [f64; 3], lit: [f64; 3]) -> Grain {
+        let mut gloss = 1.0f64;
+        let albedo: [f64; 3] = std::array::from_fn(|c| self.albedo[c] * scale[c]);
+        for c in 0..3 {
+            let mirrored = self.captured[c];
+            let most = albedo[c] / mirrored.max(LEAST);
+            let room = (1.0 - albedo[c].max(lit[c])) / (1.0 - mirrored).max(LEAST);
+            gloss = gloss.min(most).min(room).max(0.0);
+        }
+        Grain {
+            facets: self.facets,
+            gloss,
+            diffuse: std::array::from_fn(|c| (albedo[c] - gloss * self.captured[c]).max(0.0)),
+        }
+    }
+
+    fn new(of: &ParticleConstants, paths: u64, seed: u64) -> Self {
+        let facets = Conductor::new(of.roughness, of.n, of.k);
         let mut rng = stream(seed, 0);
         let mut captured = [0.0; 3];
         for _ in 0..paths {
@@ -207,7 +224,11 @@ impl Sort {
                 captured[c] += PI * density[c] / LAMP.z / paths as f64;
             }
         }
-        Self { facets, captured }
+        Self {
+            facets,
+            captured,
+            albedo: of.albedo,
+        }
     }
 }
 

@@ -212,18 +212,18 @@ impl Sheet {
             return self.layered(place, self.tones.film(albedo, alpha), alpha);
         };
         let shares = media.shares(place);
-        let bare = self.tones.bare(alpha);
-        let (albedo, grain) = media.divided(&shares, albedo, bare, rng);
-        if let Some(grain) = grain {
+        let (bare, floor) = (self.tones.bare(alpha), self.tones.floor(alpha));
+        let divided = media.divided(&shares, albedo, bare, floor, rng);
+        if let Some(grain) = divided.grain {
             return Spot::Grain(grain);
         }
         let choice = uniform(rng) * (1.0 - shares.covered());
         if choice < shares.film {
-            return self.layered(place, self.tones.film(albedo, alpha), alpha);
+            return self.layered(place, self.tones.film(divided.paper, alpha), alpha);
         }
         match &self.body {
             Some((slab, tones)) if choice < shares.film + shares.body => {
-                let tone = tones.paper(albedo, alpha);
+                let tone = tones.paper(divided.body, alpha);
                 let absorption = tone.absorption([0.0; 3]);
                 Spot::Layered {
                     layers: Layers {
@@ -234,7 +234,7 @@ impl Sheet {
                     behind: absorption,
                 }
             }
-            _ => self.layered(place, self.tones.paper(albedo, alpha), alpha),
+            _ => self.layered(place, self.tones.paper(divided.paper, alpha), alpha),
         }
     }
 
@@ -267,8 +267,9 @@ impl Sheet {
         if open <= 0.0 || uniform(rng) * open >= shares.film {
             return [0.0; 3];
         }
-        let paper = media::beside(&shares, albedo, self.tones.bare(alpha));
-        self.tones.film(paper, alpha).tau
+        let (bare, floor) = (self.tones.bare(alpha), self.tones.floor(alpha));
+        let divided = media.divided(&shares, albedo, bare, floor, rng);
+        self.tones.film(divided.paper, alpha).tau
     }
 
     /// Of the film on the other side.

@@ -107,6 +107,12 @@ impl Tones {
         self.mixed(alpha, |node, c| (node.bare[c], 0.0)).sigma_a
     }
 
+    /// What the surface alone photographs as.
+    pub fn floor(&self, alpha: f64) -> f64 {
+        self.mixed(alpha, |node, _| (node.paper.floor(), 0.0))
+            .sigma_a[0]
+    }
+
     /// Linear between the roughnesses that were walked.
     fn mixed(&self, alpha: f64, of: impl Fn(&Node, usize) -> (f64, f64)) -> Tone {
         let above = self.nodes.partition_point(|node| node.alpha < alpha);
