@@ -6,7 +6,7 @@
 //! |---|---|
 //! | [`units`], [`colour`] | quantities with their unit; encoded and linear colour, CIELAB, lamps' white |
 //! | [`optics`] | what paper, ink and lamps do with light, in f64; twins in `shaders/paper_bsdf.wgsl` |
-//! | [`mod@reference`] | the judge: the same light by a random walk, with mean and variance |
+//! | [`mod@reference`] | the judge: the same light by a random walk, of a spot or a picture, with mean and variance |
 //! | [`maps`] | picture files → mip chains, each kind filtered in its own way; files written whole |
 //! | [`manifest`] | `exhibit.toml` → a validated [`Exhibit`](manifest::Exhibit), or every fault at once |
 //! | [`needs`] | what a scene requires and why: terms, maps, sides |
@@ -20,9 +20,9 @@
 //! | [`cli`] | one file for each command |
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
-//! sheet → window or file. `units`, `colour`, `maps`, `manifest`, `needs`, `optics`,
-//! `reference` and `sample` never name Bevy; `tests/layers.rs` holds the table of who may
-//! import whom.
+//! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
+//! `colour`, `maps`, `manifest`, `needs`, `optics`, `reference` and `sample` never name Bevy;
+//! `tests/layers.rs` holds the table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes
 //! [`stage::Shown`], then the stage is arranged from it.

@@ -16,11 +16,21 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
     // Headers of pictures are checked at validation.
     ("manifest", &["units", "colour", "optics", "maps"]),
     ("needs", &["manifest", "optics", "maps"]),
-    // No tier: the judge shares constants, Fresnel and the facets' distribution only.
+    // No tier: the judge shares constants, Fresnel and the facets' distribution only. Its pictures
+    // are of the same exhibit, scene and lamps.
     (
         "reference",
         &[
+            "manifest",
+            "maps",
+            "optics::fresnel::fresnel_conductor",
             "optics::fresnel::fresnel_dielectric",
+            "optics::lamp::DISTANCE2_MIN_MM2",
+            "optics::lamp::Light",
+            "optics::lamp::Shape",
+            "optics::medium::BodyConstants",
+            "optics::medium::Matter",
+            "optics::medium::ParticleConstants",
             "optics::microfacet::d_ggx",
         ],
     ),

@@ -8,6 +8,7 @@ mod later;
 mod new;
 mod options;
 mod output;
+mod reference;
 mod render;
 pub mod report;
 mod sample;
@@ -43,6 +44,8 @@ enum Command {
     Show(show::Arguments),
     /// Render scenes into files, without a window
     Render(render::Arguments),
+    /// Render scenes by random walks of light: slowly, exactly, and with their noise
+    Reference(reference::Arguments),
     /// Name every fault of an exhibit, and what its scenes require
     Check(check::Arguments),
     /// Print a medium's BSDF at pairs of directions
@@ -66,6 +69,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     match arguments.command.unwrap_or(Command::Show(arguments.show)) {
         Command::Show(arguments) => show::run(arguments),
         Command::Render(arguments) => render::run(arguments),
+        Command::Reference(arguments) => reference::run(arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Bsdf(arguments) => bsdf::run(&arguments),
         Command::New(arguments) => new::run(&arguments),

@@ -29,8 +29,9 @@ const THUMBNAIL_PX: u32 = 480;
 /// The contact sheet's file name before its extension.
 const CONTACT_SHEET: &str = "contact-sheet";
 
+/// What is rendered, and into which files: of every command that makes pictures.
 #[derive(clap::Args)]
-pub struct Arguments {
+pub struct Pictures {
     /// The exhibit's folder, or its manifest
     exhibit: PathBuf,
     #[command(flatten)]
@@ -43,14 +44,20 @@ pub struct Arguments {
     all_scenes: bool,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = options::size_px)]
-    size: [u32; 2],
-    /// How exactly light is calculated
-    #[arg(long, default_value_t, value_parser = options::tier())]
-    tier: Tier,
+    pub size: [u32; 2],
     /// The file to write, .png (as a display shows it) or .exr (linear light); with --all-scenes,
     /// the folder
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+}
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    pictures: Pictures,
+    /// How exactly light is calculated
+    #[arg(long, default_value_t, value_parser = options::tier())]
+    tier: Tier,
 }
 
 /// What the pictures are written as.
@@ -58,6 +65,17 @@ pub struct Arguments {
 enum Format {
     Png,
     Exr,
+}
+
+/// The scenes to render, found sound, and where their pictures go, found to be writable.
+pub struct Commission {
+    pub exhibit: Exhibit,
+    /// One, or all with `all`.
+    pub scenes: Vec<Scene>,
+    pub all: bool,
+    pub size: [u32; 2],
+    pub out: PathBuf,
+    format: Format,
 }
 
 impl Format {
@@ -74,61 +92,101 @@ impl Format {
     }
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
-    if arguments.compare.is_some() {
-        return Err(later::not_yet("--compare"));
+impl Pictures {
+    /// Reads and checks all there is to know before anything is rendered: every fault of options
+    /// and exhibit, with `verify_maps` of the pictures too, and whether the files can be written.
+    pub fn commission(self, tier: Tier, verify_maps: bool) -> Result<Commission, Failure> {
+        if self.compare.is_some() {
+            return Err(later::not_yet("--compare"));
+        }
+        let (all, size, out) = (self.all_scenes, self.size, self.out);
+        let format = if all { Format::Png } else { Format::of(&out)? };
+        let exhibit = super::read(&self.exhibit)?;
+        let (exhibit, scenes) = scenes(exhibit, self.scene.overrides(), all, size)?;
+        if all || verify_maps {
+            // A damaged map of the last scene must be found before the first is written.
+            verify(&exhibit, &scenes, tier)?;
+        }
+        for sentence in &exhibit.not_shown_yet {
+            output::say(sentence);
+        }
+        if all {
+            output::can_write_folder(&out)?;
+        } else {
+            output::can_write_file(&out)?;
+        }
+        Ok(Commission {
+            exhibit,
+            scenes,
+            all,
+            size,
+            out,
+            format,
+        })
     }
-    let tier = arguments.tier;
-    let (all, size, out) = (arguments.all_scenes, arguments.size, arguments.out);
-    let format = if all { Format::Png } else { Format::of(&out)? };
+}
 
-    let exhibit = super::read(&arguments.exhibit)?;
-    let (exhibit, scenes) = scenes(exhibit, arguments.scene.overrides(), all, size)?;
-    if all {
-        // A damaged map of the last scene must be found before the first is written.
-        verify(&exhibit, &scenes, tier)?;
+impl Commission {
+    /// Writes the picture of one scene into its file, and names it.
+    pub fn deliver(&self, scene: &Scene, picture: &Picture) -> Result<(), Failure> {
+        let (width, height) = (picture.width, picture.height);
+        match self.format {
+            Format::Exr => encode::save_exr_rgb(&self.out, width, height, &picture.pixels)?,
+            Format::Png => save(&self.out, &developed(scene, picture))?,
+        }
+        output::result(self.out.display())
     }
-    for sentence in &exhibit.not_shown_yet {
-        output::say(sentence);
+
+    /// The file of a scene among all, or of their contact sheet.
+    fn file(&self, id: &str) -> PathBuf {
+        self.out.join(id).with_added_extension("png")
     }
-    if all {
-        output::can_write_folder(&out)?;
-    } else {
-        output::can_write_file(&out)?;
+
+    /// Writes the picture of one scene among all; gives a small one for the contact sheet.
+    pub fn deliver_one(&self, scene: &Scene, picture: &Picture) -> Result<Print, Failure> {
+        let print = developed(scene, picture);
+        save(&self.file(&scene.id), &print)?;
+        Ok(print.reduced(THUMBNAIL_PX))
     }
+
+    /// Writes the contact sheet, and names all files.
+    pub fn deliver_contact_sheet(&self, thumbnails: &[Print]) -> Result<(), Failure> {
+        if let Some(sheet) = develop::contact_sheet(thumbnails) {
+            save(&self.file(CONTACT_SHEET), &sheet)?;
+        }
+        let ids = self.scenes.iter().map(|scene| scene.id.as_str());
+        for id in ids.chain([CONTACT_SHEET]) {
+            output::result(self.file(id).display())?;
+        }
+        Ok(())
+    }
+}
+
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    let tier = arguments.tier;
+    let commission = arguments.pictures.commission(tier, false)?;
     device::probe()?;
 
-    let aspect = aspect(size);
-    let exhibit = Arc::new(exhibit);
-    let shown = |scene: &Scene| Shown::at_rest(exhibit.clone(), scene.clone(), tier, aspect);
-    if all {
-        return render_all(&scenes, &out, size, shown);
+    let size = commission.size;
+    let exhibit = Arc::new(commission.exhibit.clone());
+    let shown = |scene: &Scene| Shown::at_rest(exhibit.clone(), scene.clone(), tier, aspect(size));
+    if commission.all {
+        return render_all(&commission, shown);
     }
-    for scene in &scenes {
+    for scene in &commission.scenes {
         let mut darkroom = Darkroom::new(samples(scene))?;
         let picture = darkroom
             .take(shown(scene), size)
             .map_err(|error| placed(&exhibit, error))?;
-        match format {
-            Format::Exr => {
-                encode::save_exr_rgb(&out, picture.width, picture.height, &picture.pixels)?;
-            }
-            Format::Png => save(&out, &developed(scene, &picture))?,
-        }
-        output::result(out.display())?;
+        commission.deliver(scene, &picture)?;
     }
     Ok(())
 }
 
 /// Renders every scene into a file of its own, and all of them onto a contact sheet.
-fn render_all(
-    scenes: &[Scene],
-    out: &Path,
-    size: [u32; 2],
-    shown: impl Fn(&Scene) -> Shown,
-) -> Result<(), Failure> {
-    output::make_folder(out)?;
-    let file = |id: &str| out.join(id).with_added_extension("png");
+fn render_all(commission: &Commission, shown: impl Fn(&Scene) -> Shown) -> Result<(), Failure> {
+    output::make_folder(&commission.out)?;
+    let scenes = &commission.scenes;
     let bar = output::progress(scenes.len() as u64);
     let mut thumbnails = Vec::new();
     // The number of samples is a darkroom's own: one for each, and one after the other.
@@ -143,23 +201,15 @@ fn render_all(
                 Some(darkroom) => darkroom,
                 none => none.insert(Darkroom::new(wanted)?),
             };
-            let print = developed(scene, &darkroom.take(shown(scene), size)?);
-            save(&file(&scene.id), &print)?;
-            thumbnails.push((at, print.reduced(THUMBNAIL_PX)));
+            let picture = darkroom.take(shown(scene), commission.size)?;
+            thumbnails.push((at, commission.deliver_one(scene, &picture)?));
             bar.inc(1);
         }
     }
     bar.finish_and_clear();
     thumbnails.sort_by_key(|(at, _)| *at);
     let thumbnails: Vec<Print> = thumbnails.into_iter().map(|(_, print)| print).collect();
-    if let Some(sheet) = develop::contact_sheet(&thumbnails) {
-        save(&file(CONTACT_SHEET), &sheet)?;
-    }
-    let ids = scenes.iter().map(|scene| scene.id.as_str());
-    for id in ids.chain([CONTACT_SHEET]) {
-        output::result(file(id).display())?;
-    }
-    Ok(())
+    commission.deliver_contact_sheet(&thumbnails)
 }
 
 /// The scenes to render, with the exhibit that they belong to.

@@ -408,6 +408,10 @@ pub struct Scene {
     pub language: Option<String>,
 }
 
+/// Albedo of bare paper, linear sRGB, where neither manifest nor picture says one: the measured
+/// white of an old rag sheet is not known here, this is a usual one.
+pub const BARE_PAPER: [f64; 3] = [0.72, 0.67, 0.57];
+
 /// How many lamps light one scene at most.
 pub const MAX_LAMPS: usize = 8;
 /// How many overlays lie on one scene at once at most.

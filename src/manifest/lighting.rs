@@ -15,6 +15,8 @@ use crate::{
     units::{Degrees, Kelvin},
 };
 
+/// Linear level, relative to a perfect diffuser, of the dark table that the sheet lies on.
+pub const TABLE: f32 = 0.012;
 /// Square millimetres in a square metre: intensities in candela meet distances in mm.
 const MM2_PER_M2: f64 = 1e6;
 /// A lamp that lights the sheet by less than this is taken for darkness, in lx.

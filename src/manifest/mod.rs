@@ -27,6 +27,7 @@ pub mod overrides;
 mod query;
 pub mod raw;
 mod schema;
+pub mod surface;
 mod validate;
 
 use std::path::Path;

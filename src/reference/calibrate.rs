@@ -64,6 +64,50 @@ enum Unknown {
     TauF,
 }
 
+impl Unknown {
+    /// The largest value that is looked for.
+    fn most(self) -> f64 {
+        match self {
+            // Far beyond any paper: e⁻¹ in a micrometre.
+            Self::SigmaA => 1e3,
+            Self::TauF => TAU_MAX,
+        }
+    }
+
+    /// The value at a step of a curve: finest where there is little of it.
+    fn at(self, step: f64) -> f64 {
+        let share = step / Curve::STEPS as f64;
+        let share_2 = share * share;
+        match self {
+            Self::SigmaA => self.most() * share_2 * share_2,
+            Self::TauF => self.most() * share_2,
+        }
+    }
+
+    /// Its derivative by the step.
+    fn rate(self, step: f64) -> f64 {
+        let share = step / Curve::STEPS as f64;
+        let power = match self {
+            Self::SigmaA => 4.0 * share * share * share,
+            Self::TauF => 2.0 * share,
+        };
+        self.most() * power / Curve::STEPS as f64
+    }
+
+    fn set(self, around: &Absorption, value: f64) -> Absorption {
+        match self {
+            Self::SigmaA => Absorption {
+                sigma_a: value,
+                ..*around
+            },
+            Self::TauF => Absorption {
+                tau_f: value,
+                ..*around
+            },
+        }
+    }
+}
+
 struct Recorder<'a> {
     layers: &'a Layers,
     beams: &'a [Beam],
@@ -200,27 +244,18 @@ impl Capture {
 
     /// The absorption coefficient in mm⁻¹ of bare paper that shows `albedo`.
     pub fn solve_sigma_a(&self, albedo: f64) -> Solved {
-        // Far beyond any paper: e⁻¹ in a micrometre.
-        self.solve(albedo, Unknown::SigmaA, Absorption::NONE, 1e3)
+        self.solve(albedo, Unknown::SigmaA, Absorption::NONE)
     }
 
     /// The optical depth of a film on the front that makes `paper`, whose own film there is
     /// left out, show `albedo`.
     pub fn solve_tau(&self, albedo: f64, paper: &Absorption) -> Solved {
-        self.solve(albedo, Unknown::TauF, *paper, TAU_MAX)
+        self.solve(albedo, Unknown::TauF, *paper)
     }
 
-    fn solve(&self, albedo: f64, unknown: Unknown, around: Absorption, most: f64) -> Solved {
-        let with = |value: f64| match unknown {
-            Unknown::SigmaA => Absorption {
-                sigma_a: value,
-                ..around
-            },
-            Unknown::TauF => Absorption {
-                tau_f: value,
-                ..around
-            },
-        };
+    fn solve(&self, albedo: f64, unknown: Unknown, around: Absorption) -> Solved {
+        let most = unknown.most();
+        let with = |value: f64| unknown.set(&around, value);
         let wanted = albedo - self.floor.mean;
         if wanted.is_nan() || wanted <= self.body(&with(most), unknown).0 {
             return Solved {
@@ -252,63 +287,107 @@ impl Capture {
     }
 
     /// The albedos of a film on the front of `paper`, tabulated for whole pictures.
-    pub fn film_curve(&self, paper: &Absorption) -> FilmCurve {
-        let ln_albedo = (0..=FilmCurve::STEPS)
+    pub fn film_curve(&self, paper: &Absorption) -> Curve {
+        self.curve(Unknown::TauF, paper)
+    }
+
+    /// The albedos of bare paper, tabulated for whole pictures.
+    pub fn paper_curve(&self) -> Curve {
+        self.curve(Unknown::SigmaA, &Absorption::NONE)
+    }
+
+    fn curve(&self, unknown: Unknown, around: &Absorption) -> Curve {
+        let knots = (0..=Curve::STEPS)
             .map(|step| {
-                let absorption = Absorption {
-                    tau_f: FilmCurve::tau(step as f64),
-                    ..*paper
-                };
-                let (body, _) = self.body(&absorption, Unknown::TauF);
-                body.max(f64::MIN_POSITIVE).ln()
+                let step = step as f64;
+                let absorption = unknown.set(around, unknown.at(step));
+                let (body, slope) = self.body(&absorption, unknown);
+                let body = body.max(f64::MIN_POSITIVE);
+                Knot {
+                    ln_albedo: body.ln(),
+                    slope: slope / body * unknown.rate(step),
+                }
             })
             .collect();
-        FilmCurve {
+        Curve {
+            unknown,
             floor: self.floor.mean,
-            ln_albedo,
+            knots,
         }
     }
 }
 
-/// Albedo against optical depth of a film over one paper, in one channel.
-pub struct FilmCurve {
-    floor: f64,
-    /// Of the body at each step's τ, falling.
-    ln_albedo: Vec<f64>,
+/// Logarithm of the body's albedo at a step, and its derivative by the step.
+#[derive(Clone, Copy)]
+struct Knot {
+    ln_albedo: f64,
+    slope: f64,
 }
 
-impl FilmCurve {
-    const STEPS: usize = 512;
+impl Knot {
+    /// Between two knots, at `share` of the way: the cubic that has both slopes (Hermite).
+    fn towards(&self, next: &Self, share: f64) -> f64 {
+        let back = 1.0 - share;
+        let rise = next.ln_albedo - self.ln_albedo;
+        let bend = back * (self.slope - rise) + share * (rise - next.slope);
+        self.ln_albedo + share * (rise + back * bend)
+    }
+}
 
-    /// Steps are finest where ink is thin.
-    fn tau(step: f64) -> f64 {
-        let share = step / Self::STEPS as f64;
-        TAU_MAX * share * share
+/// Albedo against a film's optical depth or a paper's absorption, in one channel.
+pub struct Curve {
+    unknown: Unknown,
+    floor: f64,
+    /// Falling.
+    knots: Vec<Knot>,
+}
+
+impl Curve {
+    const STEPS: usize = 96;
+
+    /// The albedo that the surface alone shows.
+    pub fn floor(&self) -> f64 {
+        self.floor
     }
 
-    /// The optical depth that shows `albedo`: [`Capture::solve_tau`] within 10⁻⁴.
+    /// The optical depth or absorption that shows `albedo`: as [`Capture::solve_tau`] and
+    /// [`Capture::solve_sigma_a`] within 10⁻⁴.
     pub fn solve(&self, albedo: f64) -> Solved {
         let wanted = (albedo - self.floor).max(0.0).ln();
-        let above = self.ln_albedo.partition_point(|&ln| ln > wanted);
+        let above = self.knots.partition_point(|knot| knot.ln_albedo > wanted);
         if albedo.is_nan() || above > Self::STEPS {
             return Solved {
-                value: TAU_MAX,
+                value: self.unknown.most(),
                 bound: Bound::BelowFloor,
             };
         }
         if above == 0 {
-            let bound = if wanted > self.ln_albedo[0] {
+            let bound = if wanted > self.knots[0].ln_albedo {
                 Bound::AboveLossless
             } else {
                 Bound::Inside
             };
             return Solved { value: 0.0, bound };
         }
-        let (high, low) = (self.ln_albedo[above - 1], self.ln_albedo[above]);
-        let share = (high - wanted) / (high - low);
-        let (from, to) = (Self::tau(above as f64 - 1.0), Self::tau(above as f64));
+        let (from, to) = (&self.knots[above - 1], &self.knots[above]);
+        // The curve falls between the knots; regula falsi, kept lively (Illinois), finds where.
+        let (mut low, mut high) = (0.0, 1.0);
+        let (mut f_low, mut f_high) = (from.ln_albedo - wanted, to.ln_albedo - wanted);
+        let mut share = 0.0;
+        for _ in 0..40 {
+            share = low + (high - low) * f_low / (f_low - f_high);
+            let f = from.towards(to, share) - wanted;
+            if f.abs() < 1e-10 {
+                break;
+            }
+            if f > 0.0 {
+                (low, f_low, f_high) = (share, f, 0.5 * f_high);
+            } else {
+                (high, f_high, f_low) = (share, f, 0.5 * f_low);
+            }
+        }
         Solved {
-            value: from + share * (to - from),
+            value: self.unknown.at((above - 1) as f64 + share),
             bound: Bound::Inside,
         }
     }

@@ -19,7 +19,7 @@ pub const ALPHA_SMOOTH: f64 = 1e-3;
 const INDEX_MATCHED: f64 = 1e-4;
 
 /// ln u is kept above this, so that a ray deep among the facets still comes out.
-const LN_U_MIN: f64 = -700.0;
+pub(super) const LN_U_MIN: f64 = -700.0;
 
 /// A dielectric interface towards air, with GGX facets.
 #[derive(Clone, Copy, Debug)]

@@ -5,15 +5,19 @@
 //! number of threads.
 
 pub mod calibrate;
+pub mod conductor;
 pub mod flux;
 pub mod interface;
+pub mod lateral;
 pub mod phase;
+pub mod picture;
 pub mod radiance;
 pub mod rng;
 pub mod statistics;
 pub mod walk;
 
-pub use calibrate::{Bound, Capture, FilmCurve, Solved};
+pub use calibrate::{Bound, Capture, Curve, Solved};
+pub use conductor::Conductor;
 pub use flux::{Bins, Flux, bins, reflectance_transmittance};
 pub use phase::Phase;
 pub use radiance::{Lamp, Lighting, radiance};

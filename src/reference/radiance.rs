@@ -39,9 +39,37 @@ pub struct Lighting<'a, const C: usize> {
     pub table: [f64; C],
 }
 
+/// What absorbs on the way of one walk.
+///
+/// The photograph of one side was taken with the other side's ink behind it: what that ink takes
+/// from light that comes back is in the photograph already. It counts for light from behind alone.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Absorbers<'a, const C: usize> {
+    /// Of light from lamps before the sheet.
+    pub before: &'a [Absorption; C],
+    /// Of light from behind it.
+    pub behind: &'a [Absorption; C],
+}
+
+/// What an eye's walk can come upon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scenery<'a, const C: usize> {
+    pub lamps: &'a [Lamp<C>],
+    /// Radiance from every direction before the sheet, and behind it.
+    pub before: [f64; C],
+    pub behind: [f64; C],
+}
+
+impl<const C: usize> Scenery<'_, C> {
+    /// Whether there is no light at all.
+    pub fn is_dark(&self) -> bool {
+        self.lamps.is_empty() && self.before == [0.0; C] && self.behind == [0.0; C]
+    }
+}
+
 struct Eye<'a, const C: usize> {
     layers: &'a Layers,
-    absorption: &'a [Absorption; C],
+    absorbers: Absorbers<'a, C>,
     lamps: &'a [Lamp<C>],
     /// For each lamp, one sample of its unscattered way.
     beams: &'a [Vec<Beam>],
@@ -51,8 +79,13 @@ struct Eye<'a, const C: usize> {
 
 impl<const C: usize> Eye<'_, C> {
     fn add(&mut self, lamp: &Lamp<C>, factor: f64, lengths: &Lengths) {
+        let absorption = if lamp.direction.z > 0.0 {
+            self.absorbers.before
+        } else {
+            self.absorbers.behind
+        };
         for channel in 0..C {
-            let kept = self.absorption[channel].kept(lengths);
+            let kept = absorption[channel].kept(lengths);
             self.radiance[channel] += lamp.irradiance[channel] * factor * kept;
         }
     }
@@ -88,6 +121,54 @@ impl<const C: usize> Observer for Eye<'_, C> {
     }
 }
 
+/// Walks one path after another and keeps what they need of memory.
+#[derive(Default)]
+pub(super) struct Walker {
+    beams: Vec<Vec<Beam>>,
+}
+
+impl Walker {
+    /// One sample of the radiance in the direction `view`.
+    pub fn sample<const C: usize>(
+        &mut self,
+        layers: &Layers,
+        absorbers: Absorbers<C>,
+        view: DVec3,
+        scenery: &Scenery<C>,
+        rng: &mut Rng,
+    ) -> [f64; C] {
+        let count = scenery.lamps.len();
+        if self.beams.len() < count {
+            self.beams.resize_with(count, Vec::new);
+        }
+        for (lamp, beams) in scenery.lamps.iter().zip(&mut self.beams) {
+            layers.beams(-lamp.direction, beams, rng);
+        }
+        let mut eye = Eye {
+            layers,
+            absorbers,
+            lamps: scenery.lamps,
+            beams: &self.beams[..count],
+            roulette: Roulette::new(absorbers.before),
+            radiance: [0.0; C],
+        };
+        let left = layers.walk(-view, &mut eye, rng);
+        let mut radiance = eye.radiance;
+        if let Some(photon) = left {
+            let (around, absorption) = if photon.w.z < 0.0 {
+                (&scenery.behind, absorbers.behind)
+            } else {
+                (&scenery.before, absorbers.before)
+            };
+            for channel in 0..C {
+                let kept = absorption[channel].kept(&photon.lengths);
+                radiance[channel] += eye.roulette.weight * kept * around[channel];
+            }
+        }
+        radiance
+    }
+}
+
 /// Radiance per channel in the direction `view` (away from the sheet, a unit vector), with the
 /// variance of its mean over `samples` walks.
 ///
@@ -102,27 +183,18 @@ pub fn radiance<const C: usize>(
     rng: &mut Rng,
 ) -> [Estimate; C] {
     let mut sums = [Sums::default(); C];
-    let mut beams = vec![Vec::new(); lighting.lamps.len()];
+    let mut walker = Walker::default();
+    let scenery = Scenery {
+        lamps: lighting.lamps,
+        before: [0.0; C],
+        behind: lighting.table,
+    };
+    let absorbers = Absorbers {
+        before: absorption,
+        behind: absorption,
+    };
     for _ in 0..samples {
-        for (lamp, beams) in lighting.lamps.iter().zip(&mut beams) {
-            layers.beams(-lamp.direction, beams, rng);
-        }
-        let mut eye = Eye {
-            layers,
-            absorption,
-            lamps: lighting.lamps,
-            beams: &beams,
-            roulette: Roulette::new(absorption),
-            radiance: [0.0; C],
-        };
-        let left = layers.walk(-view, &mut eye, rng);
-        let mut radiance = eye.radiance;
-        if let Some(photon) = left.filter(|photon| photon.w.z < 0.0) {
-            for channel in 0..C {
-                let kept = absorption[channel].kept(&photon.lengths);
-                radiance[channel] += eye.roulette.weight * kept * lighting.table[channel];
-            }
-        }
+        let radiance = walker.sample(layers, absorbers, view, &scenery, rng);
         for (sums, radiance) in sums.iter_mut().zip(radiance) {
             sums.add(radiance);
         }

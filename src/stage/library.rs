@@ -14,7 +14,7 @@ use bevy::{
 use glam::{DAffine2, DVec2};
 
 use crate::{
-    manifest::exhibit::{HeightMap, OverlayKind, Surface},
+    manifest::exhibit::{OverlayKind, Surface},
     maps::{self, Coding, MapError, MatterPart, Pyramid, normal_coding},
     needs::MapUse,
     sheet::{mesh::SideSurface, upload},
@@ -203,7 +203,7 @@ impl Library {
                     Decoded::Map(Box::new(image), facts)
                 }),
                 Request::Surface(surface, size) => {
-                    load_surface(surface, *size).map(Decoded::Surface)
+                    SideSurface::load(surface, *size).map(Decoded::Surface)
                 }
             });
             // The receiver is gone when the program is closing: nobody is left to tell.
@@ -297,40 +297,6 @@ fn load(map: &MapUse) -> Result<Pyramid, MapError> {
             OverlayKind::Picture(encoding) => maps::load_overlay_picture(path, *encoding),
         },
     }
-}
-
-fn load_surface(surface: &Surface, size_mm: DVec2) -> Result<SideSurface, MapError> {
-    match surface {
-        Surface::Flat => Ok(SideSurface::flat(size_mm)),
-        Surface::Height(map) => curl(map, size_mm),
-        Surface::Gltf(path) => {
-            let model = maps::surface::load_gltf(path)?;
-            let side = model.uvs.iter().map(|uv| *uv * size_mm).collect();
-            Ok(SideSurface::modelled(model.positions, side, model.indices))
-        }
-    }
-}
-
-/// A sheet that follows a macro height map, read with bilinear weights.
-fn curl(map: &HeightMap, size_mm: DVec2) -> Result<SideSurface, MapError> {
-    let pyramid = maps::load_height(&map.file.path)?;
-    let level = &pyramid.levels[0];
-    let (width, height) = (level.width as usize, level.height as usize);
-    let texel = |x: usize, y: usize| f64::from(level.texels.get(y * width + x).unwrap_or_default());
-    let [low, high] = map.range_um;
-    Ok(SideSurface::curled(size_mm, |at| {
-        let uv = map.file.uv_from_side.transform_point2(at);
-        let place = (uv * DVec2::new(width as f64, height as f64) - 0.5).clamp(
-            DVec2::ZERO,
-            DVec2::new((width - 1) as f64, (height - 1) as f64),
-        );
-        let (x, y) = (place.x as usize, place.y as usize);
-        let (x_1, y_1) = ((x + 1).min(width - 1), (y + 1).min(height - 1));
-        let part = place.fract();
-        let top = texel(x, y) + (texel(x_1, y) - texel(x, y)) * part.x;
-        let bottom = texel(x, y_1) + (texel(x_1, y_1) - texel(x, y_1)) * part.x;
-        (low + (high - low) * (top + (bottom - top) * part.y)) / 1000.0
-    }))
 }
 
 /// Whether the lamps light an overlay as they light the paper: a photograph in another band

@@ -12,6 +12,7 @@ use std::{fmt::Display, io::Write, sync::Arc};
 use bevy::prelude::*;
 use glam::DQuat;
 
+pub use crate::manifest::lighting::TABLE;
 pub use library::{Library, Waker};
 pub use sides::Arranged;
 
@@ -23,9 +24,6 @@ use crate::{
     optics::tier::Tier,
     sheet::SheetPlugin,
 };
-
-/// Linear level, relative to a perfect diffuser, of the dark table that the sheet lies on.
-pub const TABLE: f32 = 0.012;
 
 /// What is shown now. Whoever changes it changes the picture.
 #[derive(Resource, Clone, Debug)]

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     manifest::{
-        exhibit::{Drawing, Paper, SideName},
+        exhibit::{BARE_PAPER, Drawing, Paper, SideName},
         lighting::Lighting,
     },
     needs::{MapUse, Needs, SideNeeds},
@@ -34,10 +34,6 @@ use crate::{
         upload::profile_image,
     },
 };
-
-/// Albedo of bare paper, linear sRGB: the measured white of an old rag sheet is not known
-/// here, this is a usual one.
-const BARE_PAPER: [f32; 3] = [0.72, 0.67, 0.57];
 
 /// What stands on the stage.
 #[derive(Resource)]
@@ -201,7 +197,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
     let paper = &drawing.paper;
     let mut uniform = PaperUniform {
         table: Vec3::splat(TABLE),
-        bare: Vec3::from_array(BARE_PAPER),
+        bare: DVec3::from_array(BARE_PAPER).as_vec3(),
         alpha: paper.roughness.max(ALPHA_MIN) as f32,
         specular: if side.terms.specular {
             paper.specular as f32
@@ -229,7 +225,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
         surface
     };
     // What bare paper shows on the side that is seen, and on the other.
-    let mut bare = [BARE_PAPER.map(f64::from); 2];
+    let mut bare = [BARE_PAPER; 2];
     for (map, facts) in side.maps.iter().zip(facts) {
         match map {
             MapUse::Albedo(_) => bare[0] = facts.bare,
