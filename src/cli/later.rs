@@ -7,7 +7,7 @@ use clap::Subcommand;
 use super::Failure;
 
 /// What help says about them.
-pub const HELP: &str = "Not in this version yet: reference, tradeoff, prepare, import, \
+pub const HELP: &str = "Not in this version yet: reference, prepare, import, \
                         export, register, supervise, publish.";
 
 /// Whatever follows the command.
@@ -38,8 +38,6 @@ macro_rules! commands {
 commands! {
     /// Render by the f64 integrator
     Reference = "reference",
-    /// Error against reference and cost of every tier
-    Tradeoff = "tradeoff",
     /// Make maps from photographs
     Prepare = "prepare",
     /// Import from IIIF, Relight or RTI

@@ -13,6 +13,7 @@ pub mod report;
 mod sample;
 mod schema;
 mod show;
+mod tradeoff;
 
 use std::{ffi::OsString, path::Path};
 
@@ -47,6 +48,8 @@ enum Command {
     Check(check::Arguments),
     /// Print a medium's BSDF at pairs of directions
     Bsdf(bsdf::Arguments),
+    /// Judge every tier: its error against the reference, and what it costs
+    Tradeoff(tradeoff::Arguments),
     /// Start an exhibit from one picture
     New(new::Arguments),
     /// Write the sample exhibits and their maps
@@ -68,6 +71,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Render(arguments) => render::run(arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Bsdf(arguments) => bsdf::run(&arguments),
+        Command::Tradeoff(arguments) => tradeoff::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

@@ -52,6 +52,10 @@ struct Eye<'a, const C: usize> {
 impl<const C: usize> Eye<'_, C> {
     fn add(&mut self, lamp: &Lamp<C>, factor: f64, lengths: &Lengths) {
         for channel in 0..C {
+            // A lamp of one colour, or of one of many pictures that share their walks.
+            if lamp.irradiance[channel] == 0.0 {
+                continue;
+            }
             let kept = self.absorption[channel].kept(lengths);
             self.radiance[channel] += lamp.irradiance[channel] * factor * kept;
         }

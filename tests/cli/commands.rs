@@ -59,7 +59,6 @@ fn a_mistyped_tier_is_told_all_names() {
 fn commands_of_later_versions_never_succeed() {
     for command in [
         "reference",
-        "tradeoff",
         "prepare",
         "import",
         "export",

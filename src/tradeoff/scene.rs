@@ -1,0 +1,573 @@
+//! What each tier would show of a scene, without rendering it: the sheet that is seen is sampled at
+//! a few hundred places, and each tier's f64 twin is compared with what the judge would find there.
+
+use std::collections::HashMap;
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    correction,
+    errors::{Errors, displayed, summary},
+};
+use crate::{
+    colour::delta_e00,
+    manifest::{
+        exhibit::{Drawing, Exhibit, Scene, Surface as Shape},
+        eye::Eye,
+        frames::side_from_table,
+        lighting::Lighting,
+    },
+    maps::{self, Coding, MapError, Pyramid},
+    needs::{MapUse, Needs, SideNeeds},
+    optics::{
+        bsdf::Specimen,
+        lamp::Light,
+        microfacet::ALPHA_MIN,
+        relief::{Horizon, mean_length, rise_of, visible_over, widened},
+        shade::{Beam, Behind, Illumination, Spot, beams},
+        slab::{Phase, Slab, UM_PER_MM},
+        study::Study,
+        table::InterfaceTable,
+        tier::{Surface, Tier, albedo_of},
+    },
+};
+
+/// Places along the picture's width and height; a sheet that fills half of it has half of them.
+const PLACES: [u32; 2] = [24, 18];
+/// A picture of this width is meant where none is named.
+pub const WIDTH_PX: u32 = 1920;
+/// A place that is less sheet than this belongs to the table.
+const SHEET: f64 = 0.5;
+/// Albedo of a side without a picture, as the stage shows it.
+const BARE_PAPER: DVec3 = DVec3::new(0.72, 0.67, 0.57);
+
+/// Decoded maps, each read once.
+#[derive(Default)]
+pub struct Maps(HashMap<String, Pyramid>);
+
+impl Maps {
+    fn load(&mut self, map: &MapUse) -> Result<(), MapError> {
+        let key = key(map);
+        if !self.0.contains_key(&key) {
+            self.0.insert(key, map.load()?);
+        }
+        Ok(())
+    }
+
+    fn get(&self, map: &MapUse) -> Option<&Pyramid> {
+        self.0.get(&key(map))
+    }
+}
+
+/// The same pixels for the same use, wherever they lie on the sheet.
+fn key(map: &MapUse) -> String {
+    let role = match map {
+        // Both are pictures of a side.
+        MapUse::OtherAlbedo(colour) => return key(&MapUse::Albedo(colour.clone())),
+        map => map.role(),
+    };
+    format!("{role} {}", map.file().path.display())
+}
+
+/// What a tier is predicted to do with a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forecast {
+    pub tier: Tier,
+    /// Against the judge, over the sheet that is seen.
+    pub errors: Errors,
+}
+
+/// One thing that is modelled, and what the picture loses without it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    pub what: &'static str,
+    /// ΔE00 between study and study without it, mean and 95th percentile.
+    pub mean: f64,
+    pub p95: f64,
+}
+
+/// A scene's sheet at the places that are looked at.
+pub struct Sampled {
+    places: Vec<Place>,
+    lighting: Lighting,
+    level: f64,
+    /// The relief's heights in mm, and of its highest point, where it casts shadows.
+    top: f64,
+}
+
+/// One place.
+struct Place {
+    /// In the side's own frame around the centre of the sheet, in mm.
+    at: DVec3,
+    /// Towards the eye.
+    v: DVec3,
+    spot: Spot,
+    /// For each lamp, the horizon of the relief towards its middle.
+    horizons: Vec<Option<Horizon>>,
+    /// Photographed share of the bare paper's albedo.
+    share: DVec3,
+}
+
+/// What may be left out of study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Without {
+    Nothing,
+    Shadows,
+    Areas,
+    SingleScatter,
+    Film,
+    Relief,
+    Gloss,
+}
+
+impl Sampled {
+    /// Reads the maps of `scene` that are not in `maps` yet, and samples the sheet as it is seen
+    /// in a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// [`MapError`] of the first map that cannot be read.
+    pub fn new(
+        exhibit: &Exhibit,
+        scene: &Scene,
+        size: [u32; 2],
+        maps: &mut Maps,
+    ) -> Result<Self, MapError> {
+        // Study asks for all maps that any tier would.
+        let needs = Needs::of(exhibit, scene, Tier::Study, false);
+        let drawing = exhibit.drawing_of(scene);
+        let lighting = exhibit.lighting(scene);
+        let mut sampled = Self {
+            places: Vec::new(),
+            lighting,
+            level: scene.exposure.level,
+            top: 0.0,
+        };
+        let Some(side) = needs.sides.first() else {
+            return Ok(sampled);
+        };
+        for map in &side.maps {
+            maps.load(map)?;
+        }
+        let sheet = Sheet::new(drawing, side, maps);
+        sampled.top = sheet.top();
+        let [width, height] = size.map(|side| f64::from(side.max(1)));
+        let aspect = width / height;
+        let camera = scene.camera.fitted(drawing.size_mm, aspect);
+        let eye = Eye::new(&camera, drawing.size_mm);
+        let footprint = camera.width_mm / width;
+        let [across, down] = PLACES;
+        for i in 0..across * down {
+            // A row is shifted against the one before: no grid of the paper is met twice alike.
+            let (column, row) = (f64::from(i % across), i / across);
+            let shift = f64::from(row * 5 % 8) / 8.0;
+            let ndc = DVec2::new(
+                2.0 * (column + shift) / f64::from(across) - 1.0,
+                1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(down),
+            );
+            let Some(at) = eye.table_point(ndc, aspect) else {
+                continue;
+            };
+            let on_side = side_from_table(at, drawing.size_mm);
+            let inside = on_side.cmpge(DVec2::ZERO).all() && on_side.cmple(drawing.size_mm).all();
+            if !inside || sheet.coverage(on_side, footprint) < SHEET {
+                continue;
+            }
+            let place = eye.place();
+            let v = if place.w > 0.0 {
+                (place.truncate() - at).normalize_or(DVec3::Z)
+            } else {
+                eye.towards
+            };
+            let (spot, share) = sheet.spot(on_side, footprint);
+            let horizons = sampled
+                .lighting
+                .lights
+                .iter()
+                .map(|light| sheet.horizon(light, at, on_side, footprint))
+                .collect();
+            sampled.places.push(Place {
+                at,
+                v,
+                spot,
+                horizons,
+                share,
+            });
+        }
+        Ok(sampled)
+    }
+
+    /// How many places of the sheet are seen.
+    pub fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Every tier against the judge.
+    pub fn forecasts(&self) -> Vec<Forecast> {
+        let truth: Vec<DVec3> = self.places.iter().map(|place| self.judged(place)).collect();
+        Tier::ALL
+            .into_iter()
+            .map(|tier| {
+                let shown = self.places.iter().map(|place| self.shown(place, tier, Without::Nothing));
+                Forecast {
+                    tier,
+                    errors: self.errors(&shown.collect::<Vec<_>>(), &truth),
+                }
+            })
+            .collect()
+    }
+
+    /// What each part of the model is worth in this scene.
+    pub fn parts(&self) -> Vec<Part> {
+        let all = self.study(Without::Nothing);
+        let rows = [
+            ("relief in the light", Without::Relief),
+            ("shadows of the relief", Without::Shadows),
+            ("lamps with their area, not as points", Without::Areas),
+            ("ink as a film, longer ways at a slant", Without::Film),
+            ("single scattering apart", Without::SingleScatter),
+            ("gloss of the surface", Without::Gloss),
+        ];
+        rows.into_iter()
+            .map(|(what, without)| {
+                let Errors { mean, p95, .. } = self.errors(&self.study(without), &all);
+                Part { what, mean, p95 }
+            })
+            .collect()
+    }
+
+    fn study(&self, without: Without) -> Vec<DVec3> {
+        let places = self.places.iter();
+        places
+            .map(|place| self.shown(place, Tier::Study, without))
+            .collect()
+    }
+
+    fn errors(&self, shown: &[DVec3], truth: &[DVec3]) -> Errors {
+        let pairs = || shown.iter().zip(truth);
+        let differences = pairs()
+            .map(|(a, b)| delta_e00(displayed(*a * self.level), displayed(*b * self.level)))
+            .collect();
+        let [mean, p95, max] = summary(differences);
+        let relative = |(a, b): (&DVec3, &DVec3)| {
+            let off = (*a - *b) / b.max(DVec3::splat(0.02));
+            (off * off).element_sum() / 3.0
+        };
+        let rms = pairs().map(relative).sum::<f64>() / shown.len().max(1) as f64;
+        Errors {
+            rms: rms.sqrt(),
+            mean,
+            p95,
+            max,
+        }
+    }
+
+    fn beams(&self, place: &Place, tier: Tier, without: Without) -> Vec<Beam> {
+        let by = if without == Without::Areas { Tier::Draft } else { tier };
+        let lights = self.lighting.lights.iter().zip(&place.horizons);
+        lights
+            .flat_map(|(light, horizon)| {
+                let casts = tier == Tier::Study && without != Without::Shadows;
+                let horizon = horizon.filter(|_| casts);
+                beams(by, light, place.at).into_iter().map(move |beam| Beam {
+                    visible: horizon
+                        .map_or(1.0, |horizon| visible_over(horizon, rise_of(beam.incidence.l))),
+                    ..beam
+                })
+            })
+            .collect()
+    }
+
+    fn shown(&self, place: &Place, tier: Tier, without: Without) -> DVec3 {
+        let light = Illumination {
+            beams: self.beams(place, tier, without),
+            ambient: self.lighting.ambient,
+            table: self.lighting.light_table,
+        };
+        let changed = place.spot.without(without);
+        let spot = changed.as_ref().unwrap_or(&place.spot);
+        spot.radiance(tier, place.v, &light)
+    }
+
+    /// What the judge would find: study, brought to where it was judged.
+    fn judged(&self, place: &Place) -> DVec3 {
+        let spot = &place.spot;
+        let alpha = spot.specimen.surface.alpha;
+        let upright = glam::DQuat::from_rotation_arc(spot.normal, DVec3::Z);
+        let eye = upright * place.v;
+        let only = |light: Illumination| spot.radiance(Tier::Study, place.v, &light);
+        let mut radiance = only(Illumination {
+            ambient: self.lighting.ambient,
+            ..Illumination::default()
+        });
+        if self.lighting.light_table != DVec3::ZERO {
+            let table = only(Illumination {
+                table: self.lighting.light_table,
+                ..Illumination::default()
+            });
+            radiance += table * correction::through(eye, alpha, place.share);
+        }
+        for beam in self.beams(place, Tier::Study, Without::Nothing) {
+            let l = upright * beam.incidence.l;
+            let light = only(Illumination {
+                beams: vec![beam],
+                ..Illumination::default()
+            });
+            if light != DVec3::ZERO {
+                radiance += light * correction::reflected(l, eye, alpha, place.share);
+            }
+        }
+        radiance
+    }
+}
+
+impl Spot {
+    /// The spot with something left out of it; `None` where nothing of it changes.
+    fn without(&self, without: Without) -> Option<Self> {
+        let mut spot = self.clone();
+        match without {
+            Without::Nothing | Without::Shadows | Without::Areas => return None,
+            Without::SingleScatter => {
+                spot.specimen.study.split.kappa = DVec3::ZERO;
+                spot.specimen.study.split.at_capture = DVec3::ONE;
+            }
+            // An excess beyond any photograph leaves no film.
+            Without::Film => spot.specimen.study.film.excess[0] = DVec3::splat(1e3),
+            Without::Relief => {
+                spot.normal = DVec3::Z;
+                spot.shortening = 1.0;
+            }
+            Without::Gloss => {
+                spot.specimen.surface.specular = 0.0;
+                let s = &spot.specimen.surface;
+                spot.specimen.interface = InterfaceTable::at_roughness(s.alpha, s.eta, 0.0);
+            }
+        }
+        Some(spot)
+    }
+}
+
+/// A side with its maps.
+struct Sheet<'m> {
+    drawing: &'m Drawing,
+    maps: Vec<(&'m MapUse, &'m Pyramid)>,
+    study: Study,
+    interface: InterfaceTable,
+    bare: DVec3,
+    other_bare: DVec3,
+    specular: f64,
+    coding: Option<Coding>,
+    /// One over the mean of the transmission map.
+    clear_scale: f64,
+}
+
+impl<'m> Sheet<'m> {
+    fn new(drawing: &'m Drawing, side: &'m SideNeeds, maps: &'m Maps) -> Self {
+        let paper = &drawing.paper;
+        let held: Vec<(&MapUse, &Pyramid)> = side
+            .maps
+            .iter()
+            .filter_map(|map| Some((map, maps.get(map)?)))
+            .collect();
+        let mut bare = [BARE_PAPER; 2];
+        let (mut coding, mut clear_scale) = (None, 1.0);
+        for (map, pyramid) in &held {
+            match map {
+                MapUse::Albedo(_) => bare[0] = maps::bare_albedo(pyramid).into(),
+                MapUse::OtherAlbedo(_) => bare[1] = maps::bare_albedo(pyramid).into(),
+                MapUse::Normal(_) | MapUse::NormalFromHeight(..) => {
+                    coding = pyramid.levels.first().map(|l| maps::normal_coding(&l.texels));
+                }
+                MapUse::Transmission(_) => clear_scale = 1.0 / maps::mean_of(pyramid).max(1e-3),
+                _ => {}
+            }
+        }
+        let [bare, other_bare] = bare.map(|picture| paper.albedo.map_or(picture, DVec3::from));
+        let specular = if side.terms.specular { paper.specular } else { 0.0 };
+        let surface = Surface::new(bare, paper.roughness, paper.index, specular);
+        let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
+        let slab = Slab {
+            scattering: paper.scattering_per_mm,
+            absorption: 0.0,
+            thickness: paper.thickness.0 / UM_PER_MM,
+            phase: Phase {
+                forward_share: paper.forward_share,
+                g_forward: paper.g_forward,
+                g_backward: paper.g_backward,
+            },
+        };
+        let study = Study::new(&surface, &here.mean_at(paper.roughness), slab);
+        let interface = if side.terms.roughness_map || side.terms.normal_map {
+            InterfaceTable::new(paper.index, paper.specular)
+        } else {
+            here
+        };
+        Self {
+            drawing,
+            maps: held,
+            study,
+            interface,
+            bare,
+            other_bare,
+            specular,
+            coding,
+            clear_scale,
+        }
+    }
+
+    fn find(&self, wanted: impl Fn(&MapUse) -> bool) -> Option<(&MapUse, &Pyramid)> {
+        let mut maps = self.maps.iter();
+        maps.find(|(map, _)| wanted(map)).copied()
+    }
+
+    /// A map's texel at a place of the side, averaged over `width` mm.
+    fn read(&self, (map, pyramid): (&MapUse, &Pyramid), on_side: DVec2, width: f64) -> [f64; 4] {
+        let file = map.file();
+        let texel = file.extent_mm().x / f64::from(file.size[0].max(1));
+        let level = (width / texel).max(1.0).log2();
+        sample(pyramid, file.uv_from_side.transform_point2(on_side), level)
+    }
+
+    fn coverage(&self, on_side: DVec2, width: f64) -> f64 {
+        self.find(|map| matches!(map, MapUse::Outline(_)))
+            .map_or(1.0, |map| self.read(map, on_side, width)[0])
+    }
+
+    /// The spot at a place, and its photographed share of the bare paper's albedo.
+    fn spot(&self, on_side: DVec2, width: f64) -> (Spot, DVec3) {
+        let paper = &self.drawing.paper;
+        let colour = |wanted: &dyn Fn(&MapUse) -> bool| {
+            let [r, g, b, _] = self.read(self.find(wanted)?, on_side, width);
+            Some(DVec3::new(r, g, b))
+        };
+        let albedo = colour(&|map| matches!(map, MapUse::Albedo(_))).unwrap_or(BARE_PAPER);
+        let mut alpha = self
+            .find(|map| matches!(map, MapUse::Roughness(_) | MapUse::RoughnessOfMatter(..)))
+            .map_or(paper.roughness, |map| self.read(map, on_side, width)[0]);
+        let mut normal = DVec3::Z;
+        let mut shortening = 1.0;
+        let of_normals =
+            self.find(|map| matches!(map, MapUse::Normal(_) | MapUse::NormalFromHeight(..)));
+        if let (Some(map), Some(coding)) = (of_normals, self.coding) {
+            let mean = self.normal(map, coding, on_side, width);
+            shortening = mean_length(mean);
+            normal = mean.normalize_or(DVec3::Z);
+            alpha = widened(alpha.max(ALPHA_MIN), shortening);
+        }
+        let other = colour(&|map| matches!(map, MapUse::OtherAlbedo(_))).unwrap_or(self.other_bare);
+        let clear = self
+            .find(|map| matches!(map, MapUse::Transmission(_)))
+            .map_or(1.0, |map| self.read(map, on_side, width)[0] * self.clear_scale);
+        let surface = Surface::new(albedo, alpha, paper.index, self.specular);
+        let mean = self.interface.mean_at(surface.alpha);
+        let share = albedo_of(&surface, &mean) / self.study.bare;
+        let spot = Spot {
+            specimen: Specimen {
+                surface,
+                interface: self.interface.clone(),
+                study: self.study.clone(),
+            },
+            normal,
+            shortening,
+            behind: Behind {
+                bare: self.bare,
+                other,
+                other_bare: self.other_bare,
+                clear,
+            },
+        };
+        (spot, share)
+    }
+
+    /// The mean normal, in the local frame.
+    fn normal(
+        &self,
+        map: (&MapUse, &Pyramid),
+        coding: Coding,
+        on_side: DVec2,
+        width: f64,
+    ) -> DVec3 {
+        let [x, y, z, _] = self
+            .read(map, on_side, width)
+            .map(|stored| coding.scale * stored + coding.offset);
+        // Directions on the side that the picture's axes point to; the local frame's y runs up.
+        let side_from_uv = map.0.file().uv_from_side.matrix2.inverse();
+        let right = side_from_uv.x_axis.normalize_or(DVec2::X);
+        let up = -side_from_uv.y_axis.normalize_or(DVec2::Y);
+        let on_side = right * x + up * y;
+        DVec3::new(on_side.x, -on_side.y, z)
+    }
+
+    fn heights(&self) -> Option<((&MapUse, &Pyramid), [f64; 2])> {
+        let map = self.find(|map| matches!(map, MapUse::Height(_)))?;
+        let MapUse::Height(height) = map.0 else {
+            return None;
+        };
+        Some((map, height.range_um.map(|um| um / UM_PER_MM)))
+    }
+
+    /// The relief's highest point in mm.
+    fn top(&self) -> f64 {
+        self.heights().map_or(0.0, |(_, [low, high])| low.max(high))
+    }
+
+    /// The horizon towards the middle of a lamp, where the relief has heights.
+    fn horizon(&self, light: &Light, at: DVec3, on_side: DVec2, footprint: f64) -> Option<Horizon> {
+        let (map, [low, high]) = self.heights()?;
+        let file = map.0.file();
+        let texel = file.extent_mm().x / f64::from(file.size[0].max(1));
+        let to_lamp = beams(Tier::Draft, light, at).first()?.incidence.l;
+        let rises = beams(Tier::Study, light, at);
+        let lowest = rises
+            .iter()
+            .map(|beam| rise_of(beam.incidence.l))
+            .fold(f64::INFINITY, f64::min);
+        // The side frame's y runs down.
+        let towards = DVec2::new(to_lamp.x, -to_lamp.y).normalize_or(DVec2::X);
+        let height = |t: f64, width: f64| {
+            low + (high - low) * self.read(map, on_side + towards * t, width)[0]
+        };
+        let width = texel.max(footprint);
+        Some(Horizon::marched(lowest, width, low.max(high), height))
+    }
+}
+
+/// A texel at texture coordinates, repeating nothing: linear within a level and between levels.
+fn sample(pyramid: &Pyramid, uv: DVec2, level: f64) -> [f64; 4] {
+    let last = pyramid.levels.len().saturating_sub(1);
+    let level = level.clamp(0.0, last as f64);
+    let near = in_level(pyramid, level as usize, uv);
+    let part = level.fract();
+    if part == 0.0 {
+        return near;
+    }
+    let far = in_level(pyramid, (level as usize + 1).min(last), uv);
+    std::array::from_fn(|c| near[c] + (far[c] - near[c]) * part)
+}
+
+fn in_level(pyramid: &Pyramid, level: usize, uv: DVec2) -> [f64; 4] {
+    let Some(level) = pyramid.levels.get(level) else {
+        return [0.0; 4];
+    };
+    let size = [level.width, level.height].map(|side| side.max(1) as usize);
+    let channels = usize::from(pyramid.channels);
+    let texel = |x: usize, y: usize, c: usize| {
+        let at = (y * size[0] + x) * channels + c.min(channels - 1);
+        f64::from(level.texels.get(at).unwrap_or_default())
+    };
+    let place = |u: f64, side: usize| {
+        let at = (u * side as f64 - 0.5).clamp(0.0, (side - 1) as f64);
+        (at as usize, (at as usize + 1).min(side - 1), at.fract())
+    };
+    let (x_0, x_1, s) = place(uv.x, size[0]);
+    let (y_0, y_1, t) = place(uv.y, size[1]);
+    std::array::from_fn(|c| {
+        let top = texel(x_0, y_0, c) * (1.0 - s) + texel(x_1, y_0, c) * s;
+        let bottom = texel(x_0, y_1, c) * (1.0 - s) + texel(x_1, y_1, c) * s;
+        top * (1.0 - t) + bottom * t
+    })
+}
+
+/// Whether the sheet is taken for flat although it is not.
+pub fn is_flattened(drawing: &Drawing) -> bool {
+    drawing.surface != Shape::Flat
+}
