@@ -55,7 +55,15 @@ const MAY_IMPORT: [(&str, &[&str]); 18] = [
     (
         "cost",
         &[
-            "bevy", "device", "manifest", "maps", "needs", "optics::tier", "sheet", "shot", "stage",
+            "bevy",
+            "device",
+            "manifest",
+            "maps",
+            "needs",
+            "optics::tier",
+            "sheet",
+            "shot",
+            "stage",
             "tradeoff",
         ],
     ),

@@ -1,6 +1,7 @@
 //! The command line. Results go to standard output and words to standard error; the program
 //! ends with 0 (done), 1 (the input is at fault), 2 (wrong usage) or 3 (no graphics device).
 
+pub mod accuracy;
 mod bsdf;
 mod check;
 mod failure;

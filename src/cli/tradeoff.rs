@@ -9,7 +9,7 @@ use std::{
 use super::{Failure, output};
 use crate::{
     cost::{self, Composer, Effort, MeasureError, Stopwatch, median},
-    manifest::{Exhibit, Scene},
+    manifest::{Exhibit, Faults, Scene},
     maps::encode,
     needs::Needs,
     optics::tier::Tier,
@@ -76,7 +76,9 @@ fn of_scenes(exhibit: Exhibit) -> Result<Table, Failure> {
     for scene in &exhibit.scenes {
         bar.set_message(scene.id.clone());
         let height = WIDTH_PX * SIZE[1] / SIZE[0];
-        let sampled = Sampled::new(&exhibit, scene, [WIDTH_PX, height], &mut maps)?;
+        let sampled = Sampled::new(&exhibit, scene, [WIDTH_PX, height], &mut maps)
+            .map_err(|fault| exhibit.map_fault(&fault.path, &fault.error))
+            .map_err(Faults::from)?;
         let costs = scene_costs(&exhibit, scene, &mut watch)?;
         for forecast in sampled.forecasts() {
             let tier = forecast.tier;

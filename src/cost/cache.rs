@@ -2,7 +2,9 @@
 
 use std::{fs, path::PathBuf};
 
-use super::{CompileError, Composer, CostError, Sheets, SheetsError, Stopwatch, instructions, median};
+use super::{
+    CompileError, Composer, CostError, Sheets, SheetsError, Stopwatch, instructions, median,
+};
 use crate::{
     device,
     maps::encode,
@@ -141,7 +143,8 @@ pub fn device_name() -> String {
         |_| "no device".to_owned(),
         |adapter| {
             let info = adapter.get_info();
-            format!("{} ({} {})", info.name, info.driver, info.driver_info).replace([',', '\n'], ";")
+            format!("{} ({} {})", info.name, info.driver, info.driver_info)
+                .replace([',', '\n'], ";")
         },
     )
 }
@@ -199,10 +202,18 @@ pub fn keep(table: &Table) {
 
 /// `$XDG_CACHE_HOME/recto/costs-VERSION-DEVICE.csv`.
 fn path(device: &str) -> Option<PathBuf> {
-    let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
+    let absolute = |name| {
+        std::env::var_os(name)
+            .map(PathBuf::from)
+            .filter(|p| p.is_absolute())
+    };
     let cache = absolute("XDG_CACHE_HOME").or_else(|| Some(absolute("HOME")?.join(".cache")))?;
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
     let device: String = device.chars().map(plain).collect();
     let version = env!("CARGO_PKG_VERSION");
-    Some(cache.join("recto").join(format!("costs-{version}-{device}.csv")))
+    Some(
+        cache
+            .join("recto")
+            .join(format!("costs-{version}-{device}.csv")),
+    )
 }

@@ -1,9 +1,6 @@
 //! The shader that a need compiles to, and how long it is.
 
-use std::{
-    collections::HashMap,
-    sync::Arc,
-};
+use std::{collections::HashMap, sync::Arc};
 
 use bevy::{
     asset::{AssetId, uuid::Uuid},
@@ -50,9 +47,7 @@ impl Composer {
         let keep = |(): &(), source: ShaderCacheSource<'_>, _: &_| match source {
             ShaderCacheSource::Naga(module) => Ok(module),
             // WGSL comes out of the composer as a naga module.
-            ShaderCacheSource::SpirV(_) | ShaderCacheSource::Wgsl(_) => {
-                Ok(naga::Module::default())
-            }
+            ShaderCacheSource::SpirV(_) | ShaderCacheSource::Wgsl(_) => Ok(naga::Module::default()),
         };
         let everything = wgpu::DownlevelFlags::all();
         let mut cache = ShaderCache::new((), WgpuFeatures::empty(), everything, keep);

@@ -139,7 +139,13 @@ fn draw(folder: &Path) -> Result<(), SheetsError> {
     let pixels = 0..TEXELS * TEXELS;
     let albedo: Vec<[u8; 3]> = pixels
         .clone()
-        .map(|i| if inked(i) { [96, 72, 56] } else { [221, 214, 198] })
+        .map(|i| {
+            if inked(i) {
+                [96, 72, 56]
+            } else {
+                [221, 214, 198]
+            }
+        })
         .collect();
     let save = |name: &str, pixels: &[[u8; 3]]| {
         encode::save_png_rgb8(&folder.join(name), TEXELS, TEXELS, pixels, None)

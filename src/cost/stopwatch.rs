@@ -79,11 +79,7 @@ impl Stopwatch {
 ///
 /// # Errors
 /// [`CostError`] where the device does not tell the time, or is lost.
-pub fn spans(
-    room: &mut Darkroom,
-    warm_up: usize,
-    frames: usize,
-) -> Result<Vec<f64>, CostError> {
+pub fn spans(room: &mut Darkroom, warm_up: usize, frames: usize) -> Result<Vec<f64>, CostError> {
     let path = DiagnosticPath::new(PASS);
     let mut spans = Vec::with_capacity(frames);
     for frame in 0..warm_up + frames {

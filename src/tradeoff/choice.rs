@@ -129,7 +129,13 @@ mod tests {
     fn costs() -> Costs {
         let ratios = [1.1, 1.2, 1.5, 2.6];
         Costs::new(LADDER.into_iter().zip(ratios).map(|(tier, ratio)| {
-            (tier, Cost { ratio, ns: 10.0 * ratio })
+            (
+                tier,
+                Cost {
+                    ratio,
+                    ns: 10.0 * ratio,
+                },
+            )
         }))
     }
 
@@ -156,6 +162,10 @@ mod tests {
         assert_eq!(in_motion(Tier::Study, 20.0), Tier::Gallery);
         assert_eq!(in_motion(Tier::Study, 12.5), Tier::Draft);
         assert_eq!(in_motion(Tier::Study, 1.0), Tier::Lambert, "the cheapest");
-        assert_eq!(in_motion(Tier::Gallery, 30.0), Tier::Gallery, "no dearer than asked for");
+        assert_eq!(
+            in_motion(Tier::Gallery, 30.0),
+            Tier::Gallery,
+            "no dearer than asked for"
+        );
     }
 }

@@ -71,7 +71,11 @@ impl Known {
                 for channel in 0..3 {
                     let (found, truth) = (found[channel], truth.mean[channel]);
                     if found > 0.0 && truth > 0.0 {
-                        let l = if subject.lit == Lit::Table { DVec3::Z } else { view.l };
+                        let l = if subject.lit == Lit::Table {
+                            DVec3::Z
+                        } else {
+                            view.l
+                        };
                         let place = Place::new(l, view.v, subject.alpha(), share[channel]);
                         let ratio = (truth / found).ln().clamp(-LARGEST, LARGEST);
                         known.push((place, ratio));

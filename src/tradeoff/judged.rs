@@ -70,7 +70,10 @@ fn read(text: &'static str) -> HashMap<&'static str, Judged> {
         let [subject, what, numbers @ ..] = cells.as_slice() else {
             continue;
         };
-        let numbers: Vec<f64> = numbers.iter().filter_map(|cell| cell.parse().ok()).collect();
+        let numbers: Vec<f64> = numbers
+            .iter()
+            .filter_map(|cell| cell.parse().ok())
+            .collect();
         if numbers.len() != COLUMNS - 2 {
             continue;
         }
@@ -176,7 +179,14 @@ impl Walker<'_> {
                 channel.tau_b = 0.0;
             }
         }
-        self.colours(&self.layers(spot), &absorption, &[*view], [0.0; 3], spot, samples)[0]
+        self.colours(
+            &self.layers(spot),
+            &absorption,
+            &[*view],
+            [0.0; 3],
+            spot,
+            samples,
+        )[0]
     }
 
     /// All views, those of one eye with the same walks.
@@ -192,8 +202,7 @@ impl Walker<'_> {
             let same = |view: &&View| view.v == first.v && view.normal == first.normal;
             let count = rest.iter().take_while(same).count().min(CHANNELS / 3);
             let (group, others) = rest.split_at(count);
-            let colours =
-                self.colours(&layers, &absorption, group, table, Spot::Whole, samples);
+            let colours = self.colours(&layers, &absorption, group, table, Spot::Whole, samples);
             found.extend(group.iter().zip(colours).map(|(view, colour)| {
                 if self.subject.lit == Lit::Raking && !view.is_lit() {
                     Colour::default()
@@ -284,7 +293,12 @@ impl Walker<'_> {
 fn joined(blocks: &[[Estimate; CHANNELS]], first: usize) -> Colour {
     let count = blocks.len() as f64;
     let sum = |of: &dyn Fn(&Estimate) -> f64| {
-        let channel = |c: usize| blocks.iter().map(|block| of(&block[first + c])).sum::<f64>();
+        let channel = |c: usize| {
+            blocks
+                .iter()
+                .map(|block| of(&block[first + c]))
+                .sum::<f64>()
+        };
         DVec3::new(channel(0), channel(1), channel(2))
     };
     Colour {

@@ -60,7 +60,11 @@ pub fn points(table: &Table) -> Vec<Point> {
             let count = rows.len() as f64;
             (!rows.is_empty()).then(|| Point {
                 tier,
-                cost: (rows.iter().map(|(cost, _)| cost.max(1e-6).ln()).sum::<f64>() / count)
+                cost: (rows
+                    .iter()
+                    .map(|(cost, _)| cost.max(1e-6).ln())
+                    .sum::<f64>()
+                    / count)
                     .exp(),
                 mean: rows.iter().map(|(_, errors)| errors.mean).sum::<f64>() / count,
                 p95: rows.iter().map(|(_, errors)| errors.p95).sum::<f64>() / count,
@@ -128,16 +132,32 @@ fn text(px: f64, colour: &'static RGBColor) -> TextStyle<'static> {
     TextStyle::from((FACE, px).into_font()).color(colour)
 }
 
-/// The least power of ten times 1, 2 or 5 that is no less than `x`, or the greatest no more.
-fn round(x: f64, up: bool) -> f64 {
-    let decade = 10f64.powf(x.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * decade);
-    let found = if up {
-        steps.into_iter().find(|step| *step >= x * 0.999)
+/// Powers of ten times these are marked where an axis spans a decade or less, and where it spans
+/// more.
+const CLOSE: &[f64] = &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+const WIDE: &[f64] = &[1.0, 2.0, 5.0, 10.0];
+
+/// The round numbers in a range.
+fn marks(range: &std::ops::Range<f64>) -> Vec<f64> {
+    let steps = if range.end / range.start < 10.0 {
+        CLOSE
     } else {
-        steps.into_iter().rev().find(|step| *step <= x * 1.001)
+        WIDE
     };
-    found.unwrap_or(x)
+    let decades = range.start.log10().floor() as i32..=range.end.log10().floor() as i32;
+    let mut marks: Vec<f64> = decades
+        .flat_map(|decade| {
+            // Ten to a negative power is not exact; one over its inverse is.
+            let at = |step: f64| match decade {
+                0.. => step * 10f64.powi(decade),
+                _ => step / 10f64.powi(-decade),
+            };
+            steps.iter().map(move |step| at(*step))
+        })
+        .filter(|mark| range.contains(mark))
+        .collect();
+    marks.dedup();
+    marks
 }
 
 fn range(values: impl Iterator<Item = f64>, room: f64) -> std::ops::Range<f64> {
@@ -180,17 +200,7 @@ where
         .disable_axes()
         .draw()
         .map_err(fault)?;
-    // Lines at 1, 2 and 5 of each decade, which the library's own marks pass over.
-    let marks = |range: &std::ops::Range<f64>| {
-        let (start, end) = (range.start, range.end);
-        let mut mark = round(start, true);
-        let mut marks = Vec::new();
-        while mark <= end {
-            marks.push(mark);
-            mark = round(mark * 1.01, true);
-        }
-        marks
-    };
+    // The library's own marks are at powers of ten only.
     for x in marks(&x_range) {
         let line = [(x, y_range.start), (x, y_range.end)];
         let series = LineSeries::new(line, FAINT.mix(0.35));
@@ -238,9 +248,20 @@ where
         }
         steps.push((point.cost, point.mean));
     }
+    // Labels keep off the front, and off the legend.
+    let mut taken = Vec::new();
+    for pair in steps.windows(2) {
+        let (x_0, y_0) = chart.backend_coord(&pair[0]);
+        let (x_1, y_1) = chart.backend_coord(&pair[1]);
+        taken.push(Rectangle {
+            left: x_0.min(x_1) - 2,
+            top: y_0.min(y_1) - 2,
+            right: x_0.max(x_1) + 2,
+            bottom: y_0.max(y_1) + 2,
+        });
+    }
     let line = LineSeries::new(steps, FRONT_COLOUR.stroke_width(2));
     chart.draw_series(line).map_err(fault)?;
-    let mut taken = Vec::new();
     for point in &points {
         let colour = colour(point.tier);
         let whisker = [(point.cost, point.mean), (point.cost, point.p95)];
@@ -264,6 +285,13 @@ where
         right: chart.backend_coord(&(x_range.end, y_range.start)).0 - 4,
         bottom: chart.backend_coord(&(x_range.end, y_range.start)).1 - 4,
     };
+    let key = (frame.right - 330, frame.top + 6);
+    taken.push(Rectangle {
+        left: key.0 - 40,
+        top: key.1,
+        right: frame.right,
+        bottom: key.1 + 80,
+    });
     for point in &points {
         let at = chart.backend_coord(&(point.cost, point.mean));
         let name = point.tier.name();
@@ -282,7 +310,7 @@ where
         area.draw_text(name, &style, (place.left, place.top))
             .map_err(fault)?;
     }
-    legend(area, (frame.right - 330, frame.top + 6))
+    legend(area, key)
 }
 
 fn legend<B: DrawingBackend>(
@@ -293,13 +321,19 @@ where
     B::ErrorType: 'static,
 {
     let rows = [
-        (LADDER_COLOUR, "tiers; dot: mean, line: to the 95th percentile"),
+        (
+            LADDER_COLOUR,
+            "tiers; dot: mean, line: to the 95th percentile",
+        ),
         (BASELINE_COLOUR, "baselines from the literature"),
         (FRONT_COLOUR, "Pareto front of the means"),
     ];
     for (i, (colour, words)) in rows.into_iter().enumerate() {
         let y = y + 24 * i as i32;
-        let line = PathElement::new(vec![(x - 34, y + 9), (x - 12, y + 9)], colour.stroke_width(3));
+        let line = PathElement::new(
+            vec![(x - 34, y + 9), (x - 12, y + 9)],
+            colour.stroke_width(3),
+        );
         area.draw(&line).map_err(fault)?;
         let style = text(16.0, &INK).pos(Pos::new(HPos::Left, VPos::Top));
         area.draw_text(words, &style, (x, y)).map_err(fault)?;
@@ -383,9 +417,8 @@ fn free_place(
             place(x - width / 2, y - away - height),
         ]
     });
-    let free = |place: &Rectangle| {
-        frame.holds(place) && !taken.iter().any(|taken| taken.meets(place))
-    };
+    let free =
+        |place: &Rectangle| frame.holds(place) && !taken.iter().any(|taken| taken.meets(place));
     candidates.into_iter().find(free).unwrap_or(right)
 }
 
@@ -436,8 +469,10 @@ mod tests {
 
     #[test]
     fn marks_are_round() {
-        assert_eq!(round(0.73, false), 0.5);
-        assert_eq!(round(3.2, true), 5.0);
-        assert_eq!(round(5.0, true), 5.0);
+        assert_eq!(
+            marks(&(0.04..30.0)),
+            [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0]
+        );
+        assert_eq!(marks(&(0.9..2.2)), [1.0, 1.2, 1.5, 2.0]);
     }
 }

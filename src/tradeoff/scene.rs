@@ -1,7 +1,7 @@
 //! What each tier would show of a scene, without rendering it: the sheet that is seen is sampled at
 //! a few hundred places, and each tier's f64 twin is compared with what the judge would find there.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, path::PathBuf};
 
 use glam::{DVec2, DVec3};
 
@@ -41,15 +41,27 @@ const SHEET: f64 = 0.5;
 /// Albedo of a side without a picture, as the stage shows it.
 const BARE_PAPER: DVec3 = DVec3::new(0.72, 0.67, 0.57);
 
+/// A map that cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{error}")]
+pub struct MapFault {
+    pub path: PathBuf,
+    pub error: MapError,
+}
+
 /// Decoded maps, each read once.
 #[derive(Default)]
 pub struct Maps(HashMap<String, Pyramid>);
 
 impl Maps {
-    fn load(&mut self, map: &MapUse) -> Result<(), MapError> {
+    fn load(&mut self, map: &MapUse) -> Result<(), MapFault> {
         let key = key(map);
         if !self.0.contains_key(&key) {
-            self.0.insert(key, map.load()?);
+            let pyramid = map.load().map_err(|error| MapFault {
+                path: map.file().path.clone(),
+                error,
+            })?;
+            self.0.insert(key, pyramid);
         }
         Ok(())
     }
@@ -77,11 +89,10 @@ pub struct Forecast {
     pub errors: Errors,
 }
 
-/// One thing that is modelled, and what the picture loses without it.
+/// What a picture loses without a part of the model: ΔE00 between study with and without it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
-    pub what: &'static str,
-    /// ΔE00 between study and study without it, mean and 95th percentile.
+pub struct Worth {
+    pub aspect: Aspect,
     pub mean: f64,
     pub p95: f64,
 }
@@ -91,8 +102,6 @@ pub struct Sampled {
     places: Vec<Place>,
     lighting: Lighting,
     level: f64,
-    /// The relief's heights in mm, and of its highest point, where it casts shadows.
-    top: f64,
 }
 
 /// One place.
@@ -108,16 +117,52 @@ struct Place {
     share: DVec3,
 }
 
-/// What may be left out of study.
+/// A part of the model that a tier may leave out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Without {
-    Nothing,
+pub enum Aspect {
+    Relief,
     Shadows,
     Areas,
-    SingleScatter,
     Film,
-    Relief,
+    SingleScatter,
     Gloss,
+    Coupling,
+}
+
+impl Aspect {
+    pub const ALL: [Self; 7] = [
+        Self::Relief,
+        Self::Shadows,
+        Self::Areas,
+        Self::Film,
+        Self::SingleScatter,
+        Self::Gloss,
+        Self::Coupling,
+    ];
+
+    /// What it is, for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Relief => "relief in the light",
+            Self::Shadows => "shadows of the relief",
+            Self::Areas => "lamps with their area",
+            Self::Film => "ink as a film, which light at a slant crosses on a longer way",
+            Self::SingleScatter => "light scattered once in the paper, apart from the rest",
+            Self::Gloss => "gloss of the surface",
+            Self::Coupling => "diffuse light coupled to the surface",
+        }
+    }
+
+    /// Whether `tier` has it, where the scene's maps do.
+    pub fn is_in(self, tier: Tier) -> bool {
+        match self {
+            Self::Relief => true,
+            Self::Shadows | Self::Film | Self::SingleScatter => tier == Tier::Study,
+            Self::Areas => tier != Tier::Draft,
+            Self::Gloss => !matches!(tier, Tier::Lambert | Tier::OrenNayar),
+            Self::Coupling => tier.is_coupled(),
+        }
+    }
 }
 
 impl Sampled {
@@ -125,22 +170,52 @@ impl Sampled {
     /// in a picture of `size` pixels.
     ///
     /// # Errors
-    /// [`MapError`] of the first map that cannot be read.
+    /// [`MapFault`] of the first map that cannot be read.
     pub fn new(
         exhibit: &Exhibit,
         scene: &Scene,
         size: [u32; 2],
         maps: &mut Maps,
-    ) -> Result<Self, MapError> {
+    ) -> Result<Self, MapFault> {
+        let drawing = exhibit.drawing_of(scene);
+        let [width, height] = size.map(|side| f64::from(side.max(1)));
+        let aspect = width / height;
+        let eye = Eye::new(
+            &scene.camera.fitted(drawing.size_mm, aspect),
+            drawing.size_mm,
+        );
+        let [across, down] = PLACES;
+        let points = (0..across * down).filter_map(|i| {
+            // A row is shifted against the one before: no grid of the paper is met twice alike.
+            let (column, row) = (f64::from(i % across), i / across);
+            let shift = f64::from(row * 5 % 8) / 8.0;
+            let ndc = DVec2::new(
+                2.0 * (column + shift) / f64::from(across) - 1.0,
+                1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(down),
+            );
+            eye.table_point(ndc, aspect)
+        });
+        Self::at(exhibit, scene, size, points, maps)
+    }
+
+    /// The same at `points` of the table's plane, of which those beside the sheet are left out.
+    ///
+    /// # Errors
+    /// As [`Sampled::new`].
+    pub fn at(
+        exhibit: &Exhibit,
+        scene: &Scene,
+        size: [u32; 2],
+        points: impl IntoIterator<Item = DVec3>,
+        maps: &mut Maps,
+    ) -> Result<Self, MapFault> {
         // Study asks for all maps that any tier would.
         let needs = Needs::of(exhibit, scene, Tier::Study, false);
         let drawing = exhibit.drawing_of(scene);
-        let lighting = exhibit.lighting(scene);
         let mut sampled = Self {
             places: Vec::new(),
-            lighting,
+            lighting: exhibit.lighting(scene),
             level: scene.exposure.level,
-            top: 0.0,
         };
         let Some(side) = needs.sides.first() else {
             return Ok(sampled);
@@ -149,24 +224,11 @@ impl Sampled {
             maps.load(map)?;
         }
         let sheet = Sheet::new(drawing, side, maps);
-        sampled.top = sheet.top();
         let [width, height] = size.map(|side| f64::from(side.max(1)));
-        let aspect = width / height;
-        let camera = scene.camera.fitted(drawing.size_mm, aspect);
+        let camera = scene.camera.fitted(drawing.size_mm, width / height);
         let eye = Eye::new(&camera, drawing.size_mm);
         let footprint = camera.width_mm / width;
-        let [across, down] = PLACES;
-        for i in 0..across * down {
-            // A row is shifted against the one before: no grid of the paper is met twice alike.
-            let (column, row) = (f64::from(i % across), i / across);
-            let shift = f64::from(row * 5 % 8) / 8.0;
-            let ndc = DVec2::new(
-                2.0 * (column + shift) / f64::from(across) - 1.0,
-                1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(down),
-            );
-            let Some(at) = eye.table_point(ndc, aspect) else {
-                continue;
-            };
+        for at in points {
             let on_side = side_from_table(at, drawing.size_mm);
             let inside = on_side.cmpge(DVec2::ZERO).all() && on_side.cmple(drawing.size_mm).all();
             if !inside || sheet.coverage(on_side, footprint) < SHEET {
@@ -179,10 +241,8 @@ impl Sampled {
                 eye.towards
             };
             let (spot, share) = sheet.spot(on_side, footprint);
-            let horizons = sampled
-                .lighting
-                .lights
-                .iter()
+            let lights = sampled.lighting.lights.iter();
+            let horizons = lights
                 .map(|light| sheet.horizon(light, at, on_side, footprint))
                 .collect();
             sampled.places.push(Place {
@@ -196,6 +256,14 @@ impl Sampled {
         Ok(sampled)
     }
 
+    /// What `tier` shows at each place, where a perfect white is shown at the scene's level.
+    pub fn lights(&self, tier: Tier) -> Vec<DVec3> {
+        let places = self.places.iter();
+        places
+            .map(|place| self.shown(place, tier, None) * self.level)
+            .collect()
+    }
+
     /// How many places of the sheet are seen.
     pub fn count(&self) -> usize {
         self.places.len()
@@ -207,7 +275,10 @@ impl Sampled {
         Tier::ALL
             .into_iter()
             .map(|tier| {
-                let shown = self.places.iter().map(|place| self.shown(place, tier, Without::Nothing));
+                let shown = self
+                    .places
+                    .iter()
+                    .map(|place| self.shown(place, tier, None));
                 Forecast {
                     tier,
                     errors: self.errors(&shown.collect::<Vec<_>>(), &truth),
@@ -217,29 +288,40 @@ impl Sampled {
     }
 
     /// What each part of the model is worth in this scene.
-    pub fn parts(&self) -> Vec<Part> {
-        let all = self.study(Without::Nothing);
-        let rows = [
-            ("relief in the light", Without::Relief),
-            ("shadows of the relief", Without::Shadows),
-            ("lamps with their area, not as points", Without::Areas),
-            ("ink as a film, longer ways at a slant", Without::Film),
-            ("single scattering apart", Without::SingleScatter),
-            ("gloss of the surface", Without::Gloss),
-        ];
-        rows.into_iter()
-            .map(|(what, without)| {
-                let Errors { mean, p95, .. } = self.errors(&self.study(without), &all);
-                Part { what, mean, p95 }
+    pub fn worths(&self) -> Vec<Worth> {
+        let all = self.study(None);
+        Aspect::ALL
+            .into_iter()
+            .map(|aspect| {
+                let Errors { mean, p95, .. } = self.errors(&self.study(Some(aspect)), &all);
+                Worth { aspect, mean, p95 }
             })
             .collect()
     }
 
-    fn study(&self, without: Without) -> Vec<DVec3> {
+    fn study(&self, without: Option<Aspect>) -> Vec<DVec3> {
         let places = self.places.iter();
         places
-            .map(|place| self.shown(place, Tier::Study, without))
+            .map(|place| match without {
+                Some(Aspect::Coupling) => self.uncoupled(place),
+                without => self.shown(place, Tier::Study, without),
+            })
             .collect()
+    }
+
+    /// Draft's light on a sheet whose lamps keep their area, against gallery's: the coupling alone,
+    /// laid upon study.
+    fn uncoupled(&self, place: &Place) -> DVec3 {
+        let lit = |tier| {
+            let light = Illumination {
+                beams: self.beams(place, Tier::Gallery, None),
+                ambient: self.lighting.ambient,
+                table: self.lighting.light_table,
+            };
+            place.spot.radiance(tier, place.v, &light)
+        };
+        let coupled = lit(Tier::Gallery).max(DVec3::splat(1e-6));
+        self.shown(place, Tier::Study, None) * lit(Tier::Draft) / coupled
     }
 
     fn errors(&self, shown: &[DVec3], truth: &[DVec3]) -> Errors {
@@ -261,29 +343,36 @@ impl Sampled {
         }
     }
 
-    fn beams(&self, place: &Place, tier: Tier, without: Without) -> Vec<Beam> {
-        let by = if without == Without::Areas { Tier::Draft } else { tier };
+    fn beams(&self, place: &Place, tier: Tier, without: Option<Aspect>) -> Vec<Beam> {
+        let by = if without == Some(Aspect::Areas) {
+            Tier::Draft
+        } else {
+            tier
+        };
         let lights = self.lighting.lights.iter().zip(&place.horizons);
         lights
             .flat_map(|(light, horizon)| {
-                let casts = tier == Tier::Study && without != Without::Shadows;
+                let casts = tier == Tier::Study && without != Some(Aspect::Shadows);
                 let horizon = horizon.filter(|_| casts);
-                beams(by, light, place.at).into_iter().map(move |beam| Beam {
-                    visible: horizon
-                        .map_or(1.0, |horizon| visible_over(horizon, rise_of(beam.incidence.l))),
-                    ..beam
-                })
+                beams(by, light, place.at)
+                    .into_iter()
+                    .map(move |beam| Beam {
+                        visible: horizon.map_or(1.0, |horizon| {
+                            visible_over(horizon, rise_of(beam.incidence.l))
+                        }),
+                        ..beam
+                    })
             })
             .collect()
     }
 
-    fn shown(&self, place: &Place, tier: Tier, without: Without) -> DVec3 {
+    fn shown(&self, place: &Place, tier: Tier, without: Option<Aspect>) -> DVec3 {
         let light = Illumination {
             beams: self.beams(place, tier, without),
             ambient: self.lighting.ambient,
             table: self.lighting.light_table,
         };
-        let changed = place.spot.without(without);
+        let changed = without.and_then(|aspect| place.spot.without(aspect));
         let spot = changed.as_ref().unwrap_or(&place.spot);
         spot.radiance(tier, place.v, &light)
     }
@@ -306,7 +395,7 @@ impl Sampled {
             });
             radiance += table * correction::through(eye, alpha, place.share);
         }
-        for beam in self.beams(place, Tier::Study, Without::Nothing) {
+        for beam in self.beams(place, Tier::Study, None) {
             let l = upright * beam.incidence.l;
             let light = only(Illumination {
                 beams: vec![beam],
@@ -322,21 +411,21 @@ impl Sampled {
 
 impl Spot {
     /// The spot with something left out of it; `None` where nothing of it changes.
-    fn without(&self, without: Without) -> Option<Self> {
+    fn without(&self, aspect: Aspect) -> Option<Self> {
         let mut spot = self.clone();
-        match without {
-            Without::Nothing | Without::Shadows | Without::Areas => return None,
-            Without::SingleScatter => {
+        match aspect {
+            Aspect::Shadows | Aspect::Areas | Aspect::Coupling => return None,
+            Aspect::SingleScatter => {
                 spot.specimen.study.split.kappa = DVec3::ZERO;
                 spot.specimen.study.split.at_capture = DVec3::ONE;
             }
             // An excess beyond any photograph leaves no film.
-            Without::Film => spot.specimen.study.film.excess[0] = DVec3::splat(1e3),
-            Without::Relief => {
+            Aspect::Film => spot.specimen.study.film.excess[0] = DVec3::splat(1e3),
+            Aspect::Relief => {
                 spot.normal = DVec3::Z;
                 spot.shortening = 1.0;
             }
-            Without::Gloss => {
+            Aspect::Gloss => {
                 spot.specimen.surface.specular = 0.0;
                 let s = &spot.specimen.surface;
                 spot.specimen.interface = InterfaceTable::at_roughness(s.alpha, s.eta, 0.0);
@@ -375,14 +464,21 @@ impl<'m> Sheet<'m> {
                 MapUse::Albedo(_) => bare[0] = maps::bare_albedo(pyramid).into(),
                 MapUse::OtherAlbedo(_) => bare[1] = maps::bare_albedo(pyramid).into(),
                 MapUse::Normal(_) | MapUse::NormalFromHeight(..) => {
-                    coding = pyramid.levels.first().map(|l| maps::normal_coding(&l.texels));
+                    coding = pyramid
+                        .levels
+                        .first()
+                        .map(|l| maps::normal_coding(&l.texels));
                 }
                 MapUse::Transmission(_) => clear_scale = 1.0 / maps::mean_of(pyramid).max(1e-3),
                 _ => {}
             }
         }
         let [bare, other_bare] = bare.map(|picture| paper.albedo.map_or(picture, DVec3::from));
-        let specular = if side.terms.specular { paper.specular } else { 0.0 };
+        let specular = if side.terms.specular {
+            paper.specular
+        } else {
+            0.0
+        };
         let surface = Surface::new(bare, paper.roughness, paper.index, specular);
         let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
         let slab = Slab {
@@ -456,7 +552,9 @@ impl<'m> Sheet<'m> {
         let other = colour(&|map| matches!(map, MapUse::OtherAlbedo(_))).unwrap_or(self.other_bare);
         let clear = self
             .find(|map| matches!(map, MapUse::Transmission(_)))
-            .map_or(1.0, |map| self.read(map, on_side, width)[0] * self.clear_scale);
+            .map_or(1.0, |map| {
+                self.read(map, on_side, width)[0] * self.clear_scale
+            });
         let surface = Surface::new(albedo, alpha, paper.index, self.specular);
         let mean = self.interface.mean_at(surface.alpha);
         let share = albedo_of(&surface, &mean) / self.study.bare;
@@ -503,11 +601,6 @@ impl<'m> Sheet<'m> {
             return None;
         };
         Some((map, height.range_um.map(|um| um / UM_PER_MM)))
-    }
-
-    /// The relief's highest point in mm.
-    fn top(&self) -> f64 {
-        self.heights().map_or(0.0, |(_, [low, high])| low.max(high))
     }
 
     /// The horizon towards the middle of a lamp, where the relief has heights.

@@ -214,7 +214,11 @@ impl Subject {
             Lit::Lamps => TILTS_DEG
                 .iter()
                 .flat_map(|&tilt| {
-                    let azimuths = if tilt == 0.0 { &AZIMUTHS_DEG[..1] } else { &AZIMUTHS_DEG };
+                    let azimuths = if tilt == 0.0 {
+                        &AZIMUTHS_DEG[..1]
+                    } else {
+                        &AZIMUTHS_DEG
+                    };
                     azimuths.iter().flat_map(move |&azimuth| {
                         ELEVATIONS_DEG.iter().map(move |&elevation| {
                             flat(direction(elevation, azimuth), direction(90.0 - tilt, 0.0))

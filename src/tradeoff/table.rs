@@ -65,8 +65,7 @@ impl Table {
     /// The table that is part of the program.
     pub fn shipped() -> &'static Self {
         // A test reads it; an empty one would choose the most exact tier everywhere.
-        static TABLE: LazyLock<Table> =
-            LazyLock::new(|| Table::read(SHIPPED).unwrap_or_default());
+        static TABLE: LazyLock<Table> = LazyLock::new(|| Table::read(SHIPPED).unwrap_or_default());
         &TABLE
     }
 
@@ -137,7 +136,11 @@ impl Table {
                 continue;
             }
             let [subject, tier, rms, mean, p95, max, ratio, ns, instructions] = cells[..] else {
-                return Err(fault(format!("{} cells, not {}", cells.len(), COLUMNS.len())));
+                return Err(fault(format!(
+                    "{} cells, not {}",
+                    cells.len(),
+                    COLUMNS.len()
+                )));
             };
             let tier = if tier == REFERENCE {
                 None
@@ -145,7 +148,8 @@ impl Table {
                 Some(tier.parse().map_err(|_| fault(format!("no tier {tier}")))?)
             };
             let number = |cell: &str| -> Result<f64, TableFault> {
-                cell.parse().map_err(|_| fault(format!("{cell} is no number")))
+                cell.parse()
+                    .map_err(|_| fault(format!("{cell} is no number")))
             };
             let cost = match (ratio, ns) {
                 ("", _) | (_, "") => None,
