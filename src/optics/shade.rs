@@ -7,9 +7,10 @@ use glam::{DQuat, DVec3};
 
 use super::{
     bsdf::Specimen,
-    ink::{diffuse_share, inner_cosine, internal_reflectance, optical_depth},
+    ink::{beyond_capture, internal_reflectance, optical_depth},
     lamp::{Incidence, Light, Shape},
     microfacet::MU_MIN,
+    refraction::mean_inner_cosine,
     study::{Seen, through_study},
     tier::{Surface, Tier, albedo_of, brdf_lambert},
 };
@@ -98,9 +99,13 @@ impl Spot {
         let albedo = albedo_of(s, &mean);
         let mut diffuse = albedo * (at_o.t * mean.t_mean * mean.capture);
         if tier == Tier::Study {
-            let depth = optical_depth(&study.film, study.film.capture_path, albedo / study.bare);
-            let way_out = depth * (1.0 / inner_cosine(mu_o, s.eta) - study.film.capture_path);
-            diffuse *= diffuse_share(&study.film, depth) * (-way_out).exp();
+            let (capture, path_o) = (self.specimen.capture(), self.specimen.path(mu_o));
+            let depth = optical_depth(&study.film, capture, albedo / study.bare);
+            let split = &study.split;
+            // Light from everywhere comes in along its mean path.
+            let leaning = split.leaning * (split.inner_mean - mean_inner_cosine(path_o));
+            diffuse *= beyond_capture(depth, capture, study.film.diffuse_path, path_o)
+                * ((1.0 + leaning).max(DVec3::ZERO) * split.at_capture);
         }
         diffuse + (1.0 - at_o.t)
     }
@@ -130,11 +135,15 @@ impl Spot {
         let share_f = diffuse(s.albedo) / study.bare;
         let share_b = diffuse(behind.other) / diffuse(behind.other_bare).max(DVec3::splat(1e-3));
         let film = &study.film;
+        let (capture, path_o) = (
+            self.specimen.capture(),
+            self.specimen.path(mu_o.max(MU_MIN)),
+        );
         let (seen, baked) = if tier == Tier::Study {
             let seen = Seen {
-                depth_f: optical_depth(film, film.capture_path, share_f),
+                depth_f: optical_depth(film, capture, share_f),
                 clear: behind.clear,
-                depth_b: optical_depth(film, film.capture_path, share_b),
+                depth_b: optical_depth(film, capture, share_b),
                 rho_f: internal_reflectance(film, share_f),
                 rho_b: internal_reflectance(film, share_b),
             };
@@ -150,7 +159,7 @@ impl Spot {
             };
             (seen, crossed_once(share_f) * crossed_once(share_b))
         };
-        baked * through_study(film, &study.through, &seen, &at_o, &mean, mu_o, s.eta)
+        baked * through_study(film, &study.through, &seen, &at_o, &mean, path_o, s.eta)
     }
 }
 

@@ -1,5 +1,7 @@
 //! How far each tier is from the judge.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{
@@ -11,6 +13,7 @@ use crate::{
     optics::{
         bsdf::Specimen,
         lamp::Incidence,
+        refraction::PathTable,
         shade::{Beam, Behind, Illumination, Spot},
         study::Study,
         table::InterfaceTable,
@@ -52,8 +55,13 @@ pub fn spot(subject: &Subject, judged: &Judged) -> Spot {
     let surface = |albedo: DVec3, alpha: f64| Surface::new(albedo, alpha, subject.index(), 1.0);
     let bare = surface(judged.bare.mean, subject.bare_alpha());
     let table = |alpha: f64| InterfaceTable::at_roughness(alpha, subject.index(), 1.0);
-    let mean = table(bare.alpha).mean_at(bare.alpha);
-    let study = Study::new(&bare, &mean, subject.slab());
+    // As on the stage, one table of paths serves paper and ink of another roughness.
+    let paths = if subject.alpha() == subject.bare_alpha() {
+        Arc::new(PathTable::at_roughness(bare.alpha, subject.index()))
+    } else {
+        PathTable::new(subject.index())
+    };
+    let study = Study::new(&bare, &table(bare.alpha), paths, subject.slab());
     let specimen = Specimen {
         surface: surface(judged.photograph.mean, subject.alpha()),
         interface: table(subject.alpha()),

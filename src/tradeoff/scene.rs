@@ -1,7 +1,7 @@
 //! What each tier would show of a scene, without rendering it: the sheet that is seen is sampled at
 //! a few hundred places, and each tier's f64 twin is compared with what the judge would find there.
 
-use std::{collections::HashMap, path::PathBuf};
+use std::{collections::HashMap, path::PathBuf, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
@@ -23,6 +23,7 @@ use crate::{
         bsdf::Specimen,
         lamp::Light,
         microfacet::ALPHA_MIN,
+        refraction::PathTable,
         relief::{Horizon, mean_length, rise_of, visible_over, widened},
         shade::{Beam, Behind, Illumination, Spot, beams},
         slab::{Phase, Slab, UM_PER_MM},
@@ -417,6 +418,7 @@ impl Spot {
             Aspect::Shadows | Aspect::Areas | Aspect::Coupling => return None,
             Aspect::SingleScatter => {
                 spot.specimen.study.split.kappa = DVec3::ZERO;
+                // What enters at a slant goes on being sent back sooner.
                 spot.specimen.study.split.at_capture = DVec3::ONE;
             }
             // An excess beyond any photograph leaves no film.
@@ -491,8 +493,14 @@ impl<'m> Sheet<'m> {
                 g_backward: paper.g_backward,
             },
         };
-        let study = Study::new(&surface, &here.mean_at(paper.roughness), slab);
-        let interface = if side.terms.roughness_map || side.terms.normal_map {
+        let varies = side.terms.roughness_map || side.terms.normal_map;
+        let paths = if varies {
+            PathTable::new(paper.index)
+        } else {
+            Arc::new(PathTable::at_roughness(paper.roughness, paper.index))
+        };
+        let study = Study::new(&surface, &here, paths, slab);
+        let interface = if varies {
             InterfaceTable::new(paper.index, paper.specular)
         } else {
             here
