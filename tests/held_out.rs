@@ -4,8 +4,6 @@
 //! What the judge finds stands in `held_out/judged.csv`; it is walked anew, in minutes, by
 //! `cargo test --release --test held_out -- --ignored bake`.
 
-#[path = "support/room.rs"]
-mod room;
 #[path = "held_out/scenes.rs"]
 mod scenes;
 
@@ -17,6 +15,8 @@ use recto::{
     manifest::Exhibit,
     needs::Needs,
     optics::tier::Tier,
+    shot::Darkroom,
+    stage::Shown,
     tradeoff::{
         choice::{self, Costs, LADDER},
         errors::displayed,
@@ -65,7 +65,7 @@ impl Outcome {
             .mean
     }
 
-    fn new(room: &mut recto::shot::Darkroom, judged: &Judged, draw: &Draw) -> Self {
+    fn new(room: &mut Darkroom, judged: &Judged, draw: &Draw) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         draw.write(folder.path(), &judged.photographs(draw));
         let (exhibit, _) = Exhibit::read(folder.path()).unwrap_or_else(|faults| panic!("{faults}"));
@@ -75,12 +75,17 @@ impl Outcome {
         let measured = LADDER
             .into_iter()
             .map(|tier| {
-                let picture = room::picture(room, &exhibit, scene, tier, scenes::SIZE);
+                let aspect = f64::from(scenes::SIZE[0]) / f64::from(scenes::SIZE[1]);
+                let shown = Shown::at_rest(exhibit.clone(), scene.clone(), tier, aspect);
+                let picture = room
+                    .take(shown, scenes::SIZE)
+                    .unwrap_or_else(|error| panic!("{}: {error}", draw.name));
                 let off: f64 = targets
                     .iter()
                     .map(|target| {
                         let [x, y] = target.pixel;
-                        let shown = DVec3::from(room::pixel(&picture, x, y));
+                        let shown = picture.pixels[(y * picture.width + x) as usize];
+                        let shown = DVec3::from(shown.map(f64::from));
                         let truth = judged.seen(draw, target.field).mean;
                         delta_e00(displayed(shown), displayed(truth))
                     })
@@ -137,7 +142,7 @@ fn kept(outcomes: &[Outcome], choose: impl Fn(&Outcome, f64) -> (Tier, bool)) ->
 #[test]
 fn predictions_hold_and_the_chosen_tier_keeps_its_bound() {
     let judged = Judged::read();
-    let mut room = room::darkroom(1);
+    let mut room = Darkroom::new(1).unwrap_or_else(|error| panic!("{error}"));
     let outcomes: Vec<Outcome> = draws()
         .iter()
         .map(|draw| Outcome::new(&mut room, &judged, draw))

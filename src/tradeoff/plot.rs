@@ -148,7 +148,7 @@ fn marks(range: &std::ops::Range<f64>) -> Vec<f64> {
     let mut marks: Vec<f64> = decades
         .flat_map(|decade| {
             // Ten to a negative power is not exact; one over its inverse is.
-            let at = |step: f64| match decade {
+            let at = move |step: f64| match decade {
                 0.. => step * 10f64.powi(decade),
                 _ => step / 10f64.powi(-decade),
             };
