@@ -17,13 +17,14 @@ use bevy::{
         },
         renderer::RenderDevice,
     },
-    shader::ShaderRef,
+    shader::{Shader, ShaderRef},
 };
 
 use super::{CostError, stopwatch::sheet};
 use crate::sheet::PaperMaterial;
 
 const PATH: &str = "recto/floor.wgsl";
+const SHADER: &str = "embedded://recto/floor.wgsl";
 
 /// Registers the floor's shader and material.
 pub struct FloorPlugin;
@@ -38,8 +39,14 @@ impl Plugin for FloorPlugin {
                 include_bytes!("../../shaders/floor.wgsl").as_slice(),
             );
         app.add_plugins(MaterialPlugin::<Floor>::default());
+        let shader = app.world().resource::<AssetServer>().load(SHADER);
+        app.insert_resource(Kept(shader));
     }
 }
+
+/// The floor comes and goes; without its shader, its pipelines would be faults.
+#[derive(Resource)]
+struct Kept(#[expect(dead_code, reason = "it is held, not read")] Handle<Shader>);
 
 /// The sheet's own bindings under the floor's shader.
 #[derive(Asset, TypePath, Clone)]
@@ -103,11 +110,11 @@ impl AsBindGroup for Floor {
 
 impl Material for Floor {
     fn vertex_shader() -> ShaderRef {
-        "embedded://recto/floor.wgsl".into()
+        SHADER.into()
     }
 
     fn fragment_shader() -> ShaderRef {
-        "embedded://recto/floor.wgsl".into()
+        SHADER.into()
     }
 
     fn enable_prepass() -> bool {
@@ -143,8 +150,8 @@ impl Material for Floor {
 }
 
 impl Floor {
-    /// Lays the floor where the one sheet lies that is on the stage, until the stage is arranged
-    /// anew ([`crate::stage::Arranged::reset`]).
+    /// Lays the floor where the one sheet lies that is on the stage. The stage does not
+    /// know, and is not to be arranged again.
     ///
     /// # Errors
     /// [`CostError`] where there is not exactly one sheet.
