@@ -16,7 +16,7 @@ use naga::{
 
 use crate::{
     needs::Terms,
-    sheet::{PAPER_BASELINES_MODULE, PAPER_BSDF, PAPER_MATERIAL, material},
+    sheet::{PAPER_BASELINES_MODULE, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA_MODULE, material},
 };
 
 const PHYSICS: AssetId<Shader> = AssetId::Uuid {
@@ -27,6 +27,9 @@ const GLUE: AssetId<Shader> = AssetId::Uuid {
 };
 const BASELINES: AssetId<Shader> = AssetId::Uuid {
     uuid: Uuid::from_u128(3),
+};
+const MEDIA: AssetId<Shader> = AssetId::Uuid {
+    uuid: Uuid::from_u128(4),
 };
 /// The bind group that Bevy gives to materials.
 const MATERIAL_BIND_GROUP: u32 = bevy::pbr::MATERIAL_BIND_GROUP_INDEX as u32;
@@ -59,6 +62,7 @@ impl Composer {
                 PAPER_BASELINES_MODULE.to_owned(),
                 "paper_baselines",
             ),
+            (MEDIA, PAPER_MEDIA_MODULE.to_owned(), "paper_media"),
             (GLUE, glue, "paper_material"),
         ] {
             let path = format!("embedded://recto/{name}.wgsl");

@@ -9,6 +9,7 @@ use super::{
     bsdf::Specimen,
     ink::{beyond_capture, internal_reflectance, optical_depth},
     lamp::{Incidence, Light, Shape},
+    matter::passing,
     microfacet::MU_MIN,
     refraction::mean_inner_cosine,
     study::{Seen, through_study},
@@ -100,7 +101,7 @@ impl Spot {
         let mut diffuse = albedo * (at_o.t * mean.t_mean * mean.capture);
         if tier == Tier::Study {
             let (capture, path_o) = (self.specimen.capture(), self.specimen.path(mu_o));
-            let depth = optical_depth(&study.film, capture, albedo / study.bare);
+            let depth = self.specimen.depth();
             let split = &study.split;
             // Light from everywhere comes in along its mean path.
             let leaning = split.leaning * (split.inner_mean - mean_inner_cosine(path_o));
@@ -141,7 +142,7 @@ impl Spot {
         );
         let (seen, baked) = if tier == Tier::Study {
             let seen = Seen {
-                depth_f: optical_depth(film, capture, share_f),
+                depth_f: self.specimen.depth(),
                 clear: behind.clear,
                 depth_b: optical_depth(film, capture, share_b),
                 rho_f: internal_reflectance(film, share_f),
@@ -159,7 +160,8 @@ impl Spot {
             };
             (seen, crossed_once(share_f) * crossed_once(share_b))
         };
-        baked * through_study(film, &study.through, &seen, &at_o, &mean, path_o, s.eta)
+        let passed = passing(&self.specimen.cover, self.specimen.body_through);
+        passed * baked * through_study(film, &study.through, &seen, &at_o, &mean, path_o, s.eta)
     }
 }
 

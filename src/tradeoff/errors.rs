@@ -13,6 +13,7 @@ use crate::{
     optics::{
         bsdf::Specimen,
         lamp::Incidence,
+        matter::{Cover, Particle},
         refraction::PathTable,
         shade::{Beam, Behind, Illumination, Spot},
         study::Study,
@@ -62,10 +63,26 @@ pub fn spot(subject: &Subject, judged: &Judged) -> Spot {
         PathTable::new(subject.index())
     };
     let study = Study::new(&bare, &table(bare.alpha), paths, subject.slab());
+    let mut cover = Cover::default();
+    let mut particle = Particle {
+        alpha: 1.0,
+        ..Particle::default()
+    };
+    if let Some((constants, covered)) = subject.particles() {
+        particle = Particle::new(&constants);
+        cover.particles = covered;
+        cover.grains = particle.albedo * covered;
+    } else if subject.depth() != [0.0; 3] {
+        cover.film = 1.0;
+    }
     let specimen = Specimen {
         surface: surface(judged.photograph.mean, subject.alpha()),
         interface: table(subject.alpha()),
         study,
+        cover,
+        particle,
+        body_albedo: DVec3::ZERO,
+        body_through: DVec3::ONE,
     };
     let behind = Behind {
         bare: judged.bare.mean,

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::subject::{CAPTURE, Lit, SUBJECTS, Subject, View};
 use crate::{
-    optics::fresnel::fresnel_conductor,
+    optics::{fresnel::fresnel_conductor, medium::ParticleConstants},
     reference::{
         Absorption, Capture, Estimate, Lamp, Layers, Lighting,
         interface::Interface,
@@ -272,15 +272,13 @@ impl Walker<'_> {
                     None => colour,
                     // (1 − c) f_paper + c f_particle: the definition of coverage.
                     Some((of, covered)) => {
-                        let mut rng = rng::stream(8, k as u64);
-                        let f = |rng: &mut Rng| metal(&of, upright * view.l, eye, rng);
-                        let lobe = mean(samples, f, &mut rng);
-                        let diffuse = DVec3::from_array(of.albedo);
+                        let lobe = lobe(&of, upright * view.l, eye, samples, k as u64);
+                        let (mirrors, diffuse) = tarnished(&of, samples);
                         Colour {
                             mean: colour.mean * (1.0 - covered)
-                                + (lobe.mean * PI + diffuse) * covered,
+                                + (lobe.mean * mirrors + diffuse) * covered,
                             variance: colour.variance * (1.0 - covered).powi(2)
-                                + lobe.variance * (PI * covered).powi(2),
+                                + lobe.variance * (mirrors * covered).powi(2),
                         }
                     }
                 }
@@ -307,13 +305,27 @@ fn joined(blocks: &[[Estimate; CHANNELS]], first: usize) -> Colour {
     }
 }
 
+/// π times the BRDF of facets of pure metal.
+fn lobe(of: &ParticleConstants, l: DVec3, v: DVec3, samples: u64, index: u64) -> Colour {
+    let mut rng = rng::stream(8, index);
+    let f = mean(samples, |rng: &mut Rng| metal(of, l, v, rng), &mut rng);
+    Colour {
+        mean: f.mean * PI,
+        variance: f.variance * (PI * PI),
+    }
+}
+
+/// The share of particles that mirrors as the pure metal, and the diffuse albedo of the rest, such
+/// that together they photograph as the catalogue says: no more mirrors than the photograph has.
+fn tarnished(of: &ParticleConstants, samples: u64) -> (f64, DVec3) {
+    let albedo = DVec3::from_array(of.albedo);
+    let captured = lobe(of, CAPTURE.l, CAPTURE.v, samples, 0).mean;
+    let mirrors = (albedo / captured).min_element().clamp(0.0, 1.0);
+    (mirrors, albedo - captured * mirrors)
+}
+
 /// The BRDF of facets of metal, all bounces walked; a random number per channel.
-fn metal(
-    of: &crate::optics::medium::ParticleConstants,
-    l: DVec3,
-    v: DVec3,
-    rng: &mut Rng,
-) -> DVec3 {
+fn metal(of: &ParticleConstants, l: DVec3, v: DVec3, rng: &mut Rng) -> DVec3 {
     let facets = Interface {
         n: 1.5,
         alpha: of.roughness,

@@ -22,6 +22,7 @@ use crate::{
     optics::{
         bsdf::Specimen,
         lamp::Light,
+        matter::{Cover, Media, Particle},
         microfacet::ALPHA_MIN,
         refraction::PathTable,
         relief::{Horizon, mean_length, rise_of, visible_over, widened},
@@ -126,17 +127,19 @@ pub enum Aspect {
     Areas,
     Film,
     SingleScatter,
+    Particles,
     Gloss,
     Coupling,
 }
 
 impl Aspect {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Relief,
         Self::Shadows,
         Self::Areas,
         Self::Film,
         Self::SingleScatter,
+        Self::Particles,
         Self::Gloss,
         Self::Coupling,
     ];
@@ -149,6 +152,7 @@ impl Aspect {
             Self::Areas => "lamps with their area",
             Self::Film => "ink as a film, which light at a slant crosses on a longer way",
             Self::SingleScatter => "light scattered once in the paper, apart from the rest",
+            Self::Particles => "metal, chalk and body colour, apart from paper and ink",
             Self::Gloss => "gloss of the surface",
             Self::Coupling => "diffuse light coupled to the surface",
         }
@@ -158,7 +162,9 @@ impl Aspect {
     pub fn is_in(self, tier: Tier) -> bool {
         match self {
             Self::Relief => true,
-            Self::Shadows | Self::Film | Self::SingleScatter => tier == Tier::Study,
+            Self::Shadows | Self::Film | Self::SingleScatter | Self::Particles => {
+                tier == Tier::Study
+            }
             Self::Areas => tier != Tier::Draft,
             Self::Gloss => !matches!(tier, Tier::Lambert | Tier::OrenNayar),
             Self::Coupling => tier.is_coupled(),
@@ -421,8 +427,12 @@ impl Spot {
                 // What enters at a slant goes on being sent back sooner.
                 spot.specimen.study.split.at_capture = DVec3::ONE;
             }
-            // An excess beyond any photograph leaves no film.
-            Aspect::Film => spot.specimen.study.film.excess[0] = DVec3::splat(1e3),
+            Aspect::Particles => {
+                spot.specimen.cover.particles = 0.0;
+                spot.specimen.cover.body = 0.0;
+                spot.specimen.cover.grains = DVec3::ZERO;
+            }
+            Aspect::Film => spot.specimen.cover.film = 0.0,
             Aspect::Relief => {
                 spot.normal = DVec3::Z;
                 spot.shortening = 1.0;
@@ -442,6 +452,7 @@ struct Sheet<'m> {
     drawing: &'m Drawing,
     maps: Vec<(&'m MapUse, &'m Pyramid)>,
     study: Study,
+    media: Media,
     interface: InterfaceTable,
     bare: DVec3,
     other_bare: DVec3,
@@ -499,7 +510,9 @@ impl<'m> Sheet<'m> {
         } else {
             Arc::new(PathTable::at_roughness(paper.roughness, paper.index))
         };
+        let mean = here.mean_at(paper.roughness);
         let study = Study::new(&surface, &here, paths, slab);
+        let media = Media::new(&side.media, &surface, &mean, &study);
         let interface = if varies {
             InterfaceTable::new(paper.index, paper.specular)
         } else {
@@ -509,6 +522,7 @@ impl<'m> Sheet<'m> {
             drawing,
             maps: held,
             study,
+            media,
             interface,
             bare,
             other_bare,
@@ -566,11 +580,16 @@ impl<'m> Sheet<'m> {
         let surface = Surface::new(albedo, alpha, paper.index, self.specular);
         let mean = self.interface.mean_at(surface.alpha);
         let share = albedo_of(&surface, &mean) / self.study.bare;
+        let (cover, particle) = self.cover(on_side, width);
         let spot = Spot {
             specimen: Specimen {
                 surface,
                 interface: self.interface.clone(),
                 study: self.study.clone(),
+                cover,
+                particle,
+                body_albedo: self.media.body_albedo,
+                body_through: self.media.body_through,
             },
             normal,
             shortening,
@@ -582,6 +601,37 @@ impl<'m> Sheet<'m> {
             },
         };
         (spot, share)
+    }
+
+    /// What lies on a spot, and the sort of particles of which there is most: all of them are
+    /// taken for it.
+    fn cover(&self, on_side: DVec2, width: f64) -> (Cover, Particle) {
+        let mut cover = Cover::default();
+        let mut particle = Particle {
+            alpha: 1.0,
+            ..Particle::default()
+        };
+        let Some(matter) = self.find(|map| matches!(map, MapUse::Matter(_))) else {
+            // Without a map of media, what is darker than the paper is ink.
+            cover.film = 1.0;
+            return (cover, particle);
+        };
+        let [film, body, p_0, p_1] = self.read(matter, on_side, width);
+        let more = self.find(|map| matches!(map, MapUse::MatterMore(_)));
+        let [p_2, p_3, p_4, p_5] = more.map_or([0.0; 4], |map| self.read(map, on_side, width));
+        let coverages = [p_0, p_1, p_2, p_3, p_4, p_5];
+        let mut most = 0.0;
+        for (of, covered) in self.media.particles.iter().zip(coverages) {
+            cover.particles += covered;
+            cover.grains += of.albedo * covered;
+            if covered > most {
+                (most, particle) = (covered, *of);
+            }
+        }
+        cover.body = body;
+        let open = (1.0 - body - cover.particles).max(1e-4);
+        cover.film = (film / open).clamp(0.0, 1.0);
+        (cover, particle)
     }
 
     /// The mean normal, in the local frame.
