@@ -10,32 +10,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-use bevy::{
-    asset::io::embedded::EmbeddedAssetRegistry,
-    camera::{ScalingMode, visibility::NoFrustumCulling},
-    diagnostic::{DiagnosticPath, DiagnosticsStore},
-    ecs::system::SystemParamItem,
-    mesh::MeshVertexBufferLayoutRef,
-    pbr::{MaterialPipeline, MaterialPipelineKey},
-    prelude::*,
-    render::{
-        diagnostic::RenderDiagnosticsPlugin,
-        render_resource::{
-            AsBindGroup, AsBindGroupError, BindGroupLayout, BindGroupLayoutEntry,
-            BufferInitDescriptor, BufferUsages, Face, OwnedBindingResource,
-            RenderPipelineDescriptor, SpecializedMeshPipelineError, UnpreparedBindGroup,
-        },
-        renderer::RenderDevice,
-    },
-    shader::ShaderRef,
-};
+use bevy::{camera::ScalingMode, prelude::*, render::diagnostic::RenderDiagnosticsPlugin};
 use recto::{
+    cost::{Floor, FloorPlugin, median, sheet},
     manifest::{
         Exhibit,
         exhibit::{Ambient, Camera as SceneCamera, LampKind, Scene, SideName},
     },
     optics::tier::Tier,
-    sheet::PaperMaterial,
     shot::Darkroom,
     stage::{Shown, TABLE},
     units::{Degrees, Lux},
@@ -46,110 +28,8 @@ const SIZE: u32 = 1024;
 const WARM_UP: usize = 4;
 const FRAMES: usize = 12;
 const ROUNDS: usize = 4;
-const SPAN: &str = "render/main_opaque_pass_3d/elapsed_gpu";
 
 type Anything = Box<dyn Error>;
-
-/// The sheet's own bindings under the floor's shader.
-#[derive(Asset, TypePath, Clone)]
-struct Floor(PaperMaterial);
-
-impl AsBindGroup for Floor {
-    type Data = [bool; 3];
-    type Param = <PaperMaterial as AsBindGroup>::Param;
-
-    fn label() -> &'static str {
-        "floor"
-    }
-
-    fn bind_group_data(&self) -> Self::Data {
-        let maps = &self.0.maps;
-        [
-            maps.normal.is_some(),
-            maps.roughness.is_some(),
-            maps.outline.is_some(),
-        ]
-    }
-
-    fn unprepared_bind_group(
-        &self,
-        layout: &BindGroupLayout,
-        device: &RenderDevice,
-        param: &mut SystemParamItem<'_, '_, Self::Param>,
-        force_no_bindless: bool,
-    ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
-        let mut group = self
-            .0
-            .unprepared_bind_group(layout, device, param, force_no_bindless)?;
-        // The layout asks for the sheet's whole uniform; the floor reads its beginning.
-        let paper = &self.0.paper;
-        let mut values = paper.clip_from_local.to_cols_array().to_vec();
-        values.extend(paper.lights[0].place.extend(0.0).to_array());
-        values.extend(paper.albedo_place.row_u.extend(0.0).to_array());
-        values.extend(paper.albedo_place.row_v.extend(0.0).to_array());
-        values.resize(1024, 0.0);
-        let contents: Vec<u8> = values
-            .iter()
-            .flat_map(|value| value.to_le_bytes())
-            .collect();
-        let buffer = device.create_buffer_with_data(&BufferInitDescriptor {
-            label: Some("floor"),
-            contents: &contents,
-            usage: BufferUsages::UNIFORM,
-        });
-        for (binding, resource) in group.bindings.iter_mut() {
-            if *binding == 0 {
-                *resource = OwnedBindingResource::Buffer(buffer.clone());
-            }
-        }
-        Ok(group)
-    }
-
-    fn bind_group_layout_entries(device: &RenderDevice, flag: bool) -> Vec<BindGroupLayoutEntry> {
-        PaperMaterial::bind_group_layout_entries(device, flag)
-    }
-}
-
-impl Material for Floor {
-    fn vertex_shader() -> ShaderRef {
-        "embedded://bench/floor.wgsl".into()
-    }
-
-    fn fragment_shader() -> ShaderRef {
-        "embedded://bench/floor.wgsl".into()
-    }
-
-    fn enable_prepass() -> bool {
-        false
-    }
-
-    fn enable_shadows() -> bool {
-        false
-    }
-
-    fn specialize(
-        _: &MaterialPipeline,
-        descriptor: &mut RenderPipelineDescriptor,
-        layout: &MeshVertexBufferLayoutRef,
-        key: MaterialPipelineKey<Self>,
-    ) -> Result<(), SpecializedMeshPipelineError> {
-        let names = ["NORMAL_MAP", "ROUGHNESS_MAP", "OUTLINE"];
-        if let Some(fragment) = &mut descriptor.fragment {
-            let wanted = names
-                .iter()
-                .zip(key.bind_group_data)
-                .filter(|(_, present)| *present);
-            fragment
-                .shader_defs
-                .extend(wanted.map(|(name, _)| (*name).into()));
-        }
-        let position = Mesh::ATTRIBUTE_POSITION.at_shader_location(0);
-        let side = Mesh::ATTRIBUTE_UV_0.at_shader_location(1);
-        descriptor.vertex.buffers = vec![layout.0.get_layout(&[position, side])?];
-        descriptor.primitive.cull_mode = Some(Face::Back);
-        Ok(())
-    }
-}
 
 /// What is measured.
 #[derive(Clone, Copy, PartialEq)]
@@ -202,7 +82,9 @@ fn main() -> Result<(), Anything> {
                 Tier::Gallery
             };
             let shown = Shown::at_rest(exhibit.clone(), scene.clone(), tier, 1.0);
-            let mut room = Darkroom::with(1, add_floor)?;
+            let mut room = Darkroom::with(1, |app| {
+                app.add_plugins((FloorPlugin, RenderDiagnosticsPlugin));
+            })?;
             let picture = room.take(shown.clone(), [SIZE, SIZE])?;
             // A picture taken is a room at rest: frames begin again.
             room.arrange(shown, [SIZE, SIZE])?;
@@ -212,11 +94,11 @@ fn main() -> Result<(), Anything> {
                 .filter(|pixel| **pixel != [TABLE; 3])
                 .count();
             match case {
-                Case::Floor => lay_floor(room.world())?,
+                Case::Floor => Floor::lay(room.world())?,
                 Case::Standard => lay_standard(room.world())?,
                 Case::Tier(_) => {}
             }
-            samples.extend(spans(&mut room)?);
+            samples.extend(recto::cost::spans(&mut room, WARM_UP, FRAMES)?);
         }
     }
     println!(
@@ -264,42 +146,6 @@ fn standard_scene(exhibit: &Exhibit) -> Scene {
     scene
 }
 
-fn add_floor(app: &mut App) {
-    let path = "bench/floor.wgsl";
-    app.world_mut()
-        .resource_mut::<EmbeddedAssetRegistry>()
-        .insert_asset(
-            path.into(),
-            Path::new(path),
-            include_bytes!("floor.wgsl").as_slice(),
-        );
-    app.add_plugins((MaterialPlugin::<Floor>::default(), RenderDiagnosticsPlugin));
-}
-
-/// The sheet on the stage: entity, mesh and material.
-fn sheet(world: &mut World) -> Result<(Entity, Mesh3d, PaperMaterial), Anything> {
-    let mut query = world.query::<(Entity, &Mesh3d, &MeshMaterial3d<PaperMaterial>)>();
-    let (entity, mesh, material) = query.single(world)?;
-    let (mesh, material) = (mesh.clone(), material.0.clone());
-    let materials = world.resource::<Assets<PaperMaterial>>();
-    Ok((
-        entity,
-        mesh,
-        materials
-            .get(&material)
-            .ok_or("the sheet has no material")?
-            .clone(),
-    ))
-}
-
-fn lay_floor(world: &mut World) -> Result<(), Anything> {
-    let (entity, mesh, material) = sheet(world)?;
-    world.despawn(entity);
-    let floor = world.resource_mut::<Assets<Floor>>().add(Floor(material));
-    world.spawn((mesh, MeshMaterial3d(floor), NoFrustumCulling));
-    Ok(())
-}
-
 fn lay_standard(world: &mut World) -> Result<(), Anything> {
     let (entity, _, material) = sheet(world)?;
     world.despawn(entity);
@@ -337,27 +183,6 @@ fn lay_standard(world: &mut World) -> Result<(), Anything> {
         Transform::from_xyz(0.0, 0.0, 500.0).looking_at(Vec3::ZERO, Vec3::Y),
     ));
     Ok(())
-}
-
-/// GPU milliseconds of the opaque pass over some frames.
-fn spans(room: &mut Darkroom) -> Result<Vec<f64>, Anything> {
-    let path = DiagnosticPath::new(SPAN);
-    let mut spans = Vec::new();
-    for frame in 0..WARM_UP + FRAMES {
-        room.frame()?;
-        let store = room.world().resource::<DiagnosticsStore>();
-        let measured = store.get(&path).and_then(|diagnostic| diagnostic.value());
-        if frame >= WARM_UP {
-            spans.push(measured.ok_or("the device does not time its passes")?);
-        }
-    }
-    Ok(spans)
-}
-
-/// Sorts, and gives the middle one.
-fn median(samples: &mut [f64]) -> f64 {
-    samples.sort_by(f64::total_cmp);
-    samples[samples.len() / 2]
 }
 
 /// From starting the program to its first picture at 1920 × 1080, and its peak memory.

@@ -16,13 +16,15 @@
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
 //! | [`device`] | whether there is a graphics device |
 //! | [`compute`] | the shipped physics on the graphics device, without a picture |
+//! | [`tradeoff`] | how far each tier is from the judge, and which one serves a scene |
+//! | [`cost`] | what each tier costs: instructions, and time on this machine |
 //! | [`sample`] | the sample exhibits, drawn by code |
 //! | [`cli`] | one file for each command |
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
 //! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
-//! `colour`, `maps`, `manifest`, `needs`, `optics`, `reference` and `sample` never name Bevy;
-//! `tests/layers.rs` holds the table of who may import whom.
+//! `colour`, `maps`, `manifest`, `needs`, `optics`, `reference`, `tradeoff` and `sample` never name
+//! Bevy; `tests/layers.rs` holds the table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes
 //! [`stage::Shown`], then the stage is arranged from it.
@@ -31,6 +33,7 @@
 pub mod cli;
 pub mod colour;
 pub mod compute;
+pub mod cost;
 pub mod develop;
 pub mod device;
 pub mod manifest;
@@ -42,5 +45,6 @@ pub mod sample;
 pub mod sheet;
 pub mod shot;
 pub mod stage;
+pub mod tradeoff;
 pub mod units;
 pub mod visitor;

@@ -10,10 +10,10 @@ use glam::DVec2;
 
 use crate::{
     manifest::exhibit::{
-        ColourMap, Drawing, Exhibit, HeightMap, LampKind, MapFile, NormalMap, Overlay,
+        ColourMap, Drawing, Exhibit, HeightMap, LampKind, MapFile, NormalMap, Overlay, OverlayKind,
         RoughnessMap, Scene, Side, SideName, Surface,
     },
-    maps::MatterSlot,
+    maps::{self, MapError, MatterPart, MatterSlot, Pyramid},
     optics::{matter::SideMedia, tier::Tier},
 };
 pub use matter::MediaStack;
@@ -137,6 +137,41 @@ impl MapUse {
                 &mut stack.file
             }
             Self::Overlay(overlay) => &mut overlay.file,
+        }
+    }
+
+    /// Decodes it: the one place where a map's file becomes texels.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or is not what it is read for.
+    pub fn load(&self) -> Result<Pyramid, MapError> {
+        let path = &self.file().path;
+        match self {
+            Self::Albedo(map) | Self::OtherAlbedo(map) => maps::load_colour(path, map.encoding),
+            Self::Normal(map) => maps::load_normal(path, map.y),
+            Self::NormalFromHeight(map, extent_mm) => {
+                maps::load_normal_from_height(path, map.range_um, *extent_mm)
+            }
+            Self::Roughness(map) => maps::load_roughness(path, map.gloss),
+            Self::RoughnessOfMatter(stack, paper) => {
+                maps::load_roughness_of_matter(&stack.layers, *paper)
+            }
+            Self::Matter(stack) | Self::OtherMatter(stack) => {
+                maps::load_matter(&stack.layers, MatterPart::First)
+            }
+            Self::MatterMore(stack) => maps::load_matter(&stack.layers, MatterPart::More),
+            Self::Outline(_) => maps::load_outline(path),
+            Self::Transmission(_) | Self::Height(_) => maps::load_height(path),
+            Self::Overlay(overlay) => match &overlay.kind {
+                OverlayKind::Categorical(legend) => {
+                    let colours: Vec<[u8; 3]> = legend.iter().map(|entry| entry.colour).collect();
+                    maps::load_overlay_categorical(path, &colours).map(|map| map.pyramid)
+                }
+                OverlayKind::Continuous { colour_map, .. } => {
+                    maps::load_overlay_continuous(path, *colour_map)
+                }
+                OverlayKind::Picture(encoding) => maps::load_overlay_picture(path, *encoding),
+            },
         }
     }
 

@@ -325,7 +325,11 @@ impl Darkroom {
     }
 
     /// A pipeline that failed to compile draws nothing and says so only here.
-    fn check_pipelines(&self) -> Result<(), ShotError> {
+    ///
+    /// # Errors
+    /// [`ShotError::Device`] with the first such fault, which may be a shader that is still being
+    /// loaded.
+    pub fn check_pipelines(&self) -> Result<(), ShotError> {
         let Some(render) = self.apps.sub_apps.get(&RenderApp.intern()) else {
             return Err(ShotError::Device("there is no renderer".into()));
         };

@@ -8,7 +8,7 @@ use std::{
 
 /// Each module with the modules, or paths within them, that it may name. `bevy` stands for every
 /// crate of Bevy's. The crate's root and `cli` may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 16] = [
+const MAY_IMPORT: [(&str, &[&str]); 18] = [
     ("units", &[]),
     ("colour", &[]),
     ("optics", &["units", "colour"]),
@@ -35,6 +35,19 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
         ],
     ),
     ("sample", &["maps", "colour", "units"]),
+    // Tiers are held against the judge here, and predicted on scenes.
+    (
+        "tradeoff",
+        &[
+            "units",
+            "colour",
+            "optics",
+            "reference",
+            "maps",
+            "manifest",
+            "needs",
+        ],
+    ),
     ("develop", &["colour"]),
     ("sheet", &["bevy", "needs", "manifest", "maps", "optics"]),
     (
@@ -50,8 +63,25 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
         &["bevy", "device", "manifest", "maps", "stage", "colour"],
     ),
     (
+        "cost",
+        &[
+            "bevy",
+            "device",
+            "manifest",
+            "maps",
+            "needs",
+            "optics::tier",
+            "sheet",
+            "shot",
+            "stage",
+            "tradeoff",
+        ],
+    ),
+    (
         "visitor",
         &[
+            "cost",
+            "tradeoff",
             "bevy",
             "manifest",
             "stage",

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use super::{
-    Failure, output,
+    Failure,
+    accuracy::Prices,
+    output,
     report::{PhotographReport, Refused, Report},
 };
 use crate::{
@@ -78,7 +80,8 @@ fn report(arguments: &Arguments) -> Result<(Report, Vec<(String, Mask)>), Faults
             masks.push((photograph.name(), mask));
         }
     }
-    Ok((Report::new(&exhibit, warnings, photographs), masks))
+    let report = Report::new(&exhibit, warnings, photographs, &Prices::here())?;
+    Ok((report, masks))
 }
 
 fn json(value: &impl serde::Serialize) -> Result<String, Failure> {

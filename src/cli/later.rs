@@ -7,7 +7,7 @@ use clap::Subcommand;
 use super::Failure;
 
 /// What help says about them.
-pub const HELP: &str = "Not in this version yet: tradeoff, prepare, import, \
+pub const HELP: &str = "Not in this version yet: prepare, import, \
                         export, register, supervise, publish.";
 
 /// Whatever follows the command.
@@ -36,8 +36,6 @@ macro_rules! commands {
 }
 
 commands! {
-    /// Error against reference and cost of every tier
-    Tradeoff = "tradeoff",
     /// Make maps from photographs
     Prepare = "prepare",
     /// Import from IIIF, Relight or RTI

@@ -1,6 +1,7 @@
 //! The command line. Results go to standard output and words to standard error; the program
 //! ends with 0 (done), 1 (the input is at fault), 2 (wrong usage) or 3 (no graphics device).
 
+pub mod accuracy;
 mod bsdf;
 mod check;
 mod failure;
@@ -14,6 +15,7 @@ pub mod report;
 mod sample;
 mod schema;
 mod show;
+mod tradeoff;
 
 use std::{ffi::OsString, path::Path};
 
@@ -50,6 +52,8 @@ enum Command {
     Check(check::Arguments),
     /// Print a medium's BSDF at pairs of directions
     Bsdf(bsdf::Arguments),
+    /// Judge every tier: its error against the reference, and what it costs
+    Tradeoff(tradeoff::Arguments),
     /// Start an exhibit from one picture
     New(new::Arguments),
     /// Write the sample exhibits and their maps
@@ -72,6 +76,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Reference(arguments) => reference::run(arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Bsdf(arguments) => bsdf::run(&arguments),
+        Command::Tradeoff(arguments) => tradeoff::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

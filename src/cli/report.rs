@@ -11,6 +11,7 @@ use std::{
 use glam::DVec3;
 use serde::Serialize;
 
+use super::accuracy::{Prices, SceneAccuracy};
 use crate::{
     colour,
     manifest::{
@@ -21,13 +22,11 @@ use crate::{
     },
     needs::Needs,
     optics::tier::Tier,
+    tradeoff::scene::Maps,
 };
 
 /// The tier that requirements are told for, which is the one used where none is asked for.
 const TIER: Tier = Tier::Gallery;
-/// What there is to say of a tier that meets the accuracy asked for.
-const ACCURACY: &str = "Which tier meets this is told by a later version, which can measure it.";
-
 /// A faulty exhibit, for programs.
 #[derive(Serialize)]
 pub struct Refused<'f> {
@@ -101,6 +100,7 @@ pub struct SceneReport {
     /// The same in a window, where the sheet can be turned over.
     pub gpu_bytes_in_window: u64,
     pub exposure: ExposureReport,
+    pub accuracy: SceneAccuracy,
 }
 
 /// A map that a scene needs.
@@ -145,21 +145,32 @@ pub struct SourceReport {
 pub struct AccuracyReport {
     pub max_delta_e: f64,
     pub frame_ms: f64,
-    pub tier: &'static str,
+    /// Where the costs of tiers are known from.
+    pub costs: String,
 }
 
 impl Report {
     /// Of an exhibit that was read with `warnings`.
+    ///
+    /// # Errors
+    /// The fault of a map that a scene cannot be predicted without.
     pub fn new(
         exhibit: &Exhibit,
         warnings: Vec<Fault>,
         photographs: Vec<PhotographReport>,
-    ) -> Self {
+        prices: &Prices,
+    ) -> Result<Self, Faults> {
+        let mut maps = Maps::default();
+        let scenes: Result<Vec<SceneReport>, Faults> = exhibit
+            .scenes
+            .iter()
+            .map(|scene| SceneReport::new(exhibit, scene, prices, &mut maps))
+            .collect();
         let Accuracy {
             max_delta_e,
             frame_ms,
         } = exhibit.accuracy;
-        Self {
+        Ok(Self {
             sound: true,
             manifest: exhibit.manifest.clone(),
             drawings: exhibit.drawings.len(),
@@ -167,24 +178,27 @@ impl Report {
             warnings,
             photographs,
             tier: TIER.name(),
-            scenes: exhibit
-                .scenes
-                .iter()
-                .map(|scene| SceneReport::new(exhibit, scene))
-                .collect(),
+            scenes: scenes?,
             sources: sources(exhibit),
             not_shown_yet: exhibit.not_shown_yet.clone(),
             accuracy: AccuracyReport {
                 max_delta_e,
                 frame_ms,
-                tier: ACCURACY,
+                costs: prices.words.clone(),
             },
-        }
+        })
     }
 }
 
 impl SceneReport {
-    fn new(exhibit: &Exhibit, scene: &Scene) -> Self {
+    fn new(
+        exhibit: &Exhibit,
+        scene: &Scene,
+        prices: &Prices,
+        held: &mut Maps,
+    ) -> Result<Self, Faults> {
+        let accuracy = SceneAccuracy::new(exhibit, scene, prices, held)
+            .map_err(|fault| exhibit.map_fault(&fault.path, &fault.error))?;
         let needs = Needs::of(exhibit, scene, TIER, false);
         let maps = needs.sides.iter().flat_map(|side| {
             side.maps.iter().map(|map| MapReport {
@@ -195,7 +209,7 @@ impl SceneReport {
                 gpu_bytes: map.gpu_bytes(),
             })
         });
-        Self {
+        Ok(Self {
             id: scene.id.clone(),
             drawing: exhibit.drawing_of(scene).id.clone(),
             side: scene.side,
@@ -204,7 +218,8 @@ impl SceneReport {
             gpu_bytes_in_window: Needs::of(exhibit, scene, TIER, true).gpu_bytes(),
             exposure: ExposureReport::new(exhibit, scene),
             reasons: needs.reasons,
-        }
+            accuracy,
+        })
     }
 }
 
@@ -339,9 +354,15 @@ impl Display for Report {
         }
         write!(
             f,
-            "\nAccuracy asked for: ΔE00 {} within {} ms a frame. {}",
-            self.accuracy.max_delta_e, self.accuracy.frame_ms, self.accuracy.tier
+            "\nAccuracy asked for: ΔE00 {} in the mean over the visible sheet, {} ms a frame while \
+             something moves. {}",
+            self.accuracy.max_delta_e, self.accuracy.frame_ms, self.accuracy.costs
         )?;
+        if !f.alternate() {
+            for scene in &self.scenes {
+                write!(f, "\n  {}: {}", scene.id, scene.accuracy)?;
+            }
+        }
         if !self.not_shown_yet.is_empty() {
             f.write_str("\nRead and checked, but not shown by this version:")?;
         }
@@ -425,7 +446,7 @@ impl Display for SceneReport {
             let comma = if i > 0 { "," } else { "" };
             write!(f, "{comma} {lamp} {lux:.1} lx")?;
         }
-        Ok(())
+        write!(f, "\n  {:#}", self.accuracy)
     }
 }
 

@@ -20,7 +20,7 @@ use super::{
     refraction::{PathTable, crossed},
     slab::{Phase, Slab, UM_PER_MM},
     study::{Seen, Study, Ways, brdf_study, btdf_study},
-    table::InterfaceTable,
+    table::{Interface, InterfaceTable},
     tier::{Facing, Surface, Tier, brdf_draft, brdf_gallery, brdf_lambert, facing},
 };
 use crate::units::Micrometres;
@@ -189,7 +189,7 @@ impl Specimen {
         let [l, v] = pair.directions();
         if !pair.is_transmitted() {
             return Sample {
-                f: self.reflected(tier, l, v),
+                f: self.reflected(tier, l, v, 1.0),
                 ..Sample::default()
             };
         }
@@ -234,10 +234,10 @@ impl Specimen {
         passed * (t * t) * crossed(self.path(mu), depth)
     }
 
-    fn studied(&self, g: &Facing) -> DVec3 {
+    fn studied(&self, g: &Facing, shortening: f64) -> DVec3 {
         let s = &self.surface;
         let mean = self.interface.mean_at(s.alpha);
-        let [at_i, at_o] = [g.mu_i, g.mu_o].map(|mu| self.interface.at(mu, s.alpha));
+        let (at_i, at_o) = self.boundaries(g, shortening);
         let shares = self.shares();
         let particle = &self.particle;
         let albedo = particle.albedo * shares.scale;
@@ -258,18 +258,38 @@ impl Specimen {
             + grains * self.cover.particles
     }
 
-    fn reflected(&self, tier: Tier, l: DVec3, v: DVec3) -> DVec3 {
-        let s = &self.surface;
+    fn boundaries(&self, g: &Facing, shortening: f64) -> (Interface, Interface) {
+        let at = |mu: f64| self.interface.at(mu, self.surface.alpha);
+        let lit = at(g.mu_i);
+        let lit = Interface {
+            t: lit.t * shortening,
+            ..lit
+        };
+        (lit, at(g.mu_o))
+    }
+
+    /// The BRDF of `tier` without the cosine, in the frame of the normal: unit vectors towards the
+    /// light and the eye. A mean of normals of this length (`shortening`, 1 on even paper) takes
+    /// that share from the diffuse part, as [`super::relief`] says.
+    pub fn reflected(&self, tier: Tier, l: DVec3, v: DVec3, shortening: f64) -> DVec3 {
+        let s = &match tier {
+            // Before the albedo's bounds, as they belong to the paper and not to its relief.
+            Tier::Gallery | Tier::Study => self.surface,
+            _ => Surface {
+                albedo: self.surface.albedo * shortening,
+                ..self.surface
+            },
+        };
         let g = facing(DVec3::Z, l, v);
         let off = off_mirror(DVec3::Z, l, v);
         match tier {
             Tier::Draft => brdf_draft(s, &g),
             Tier::Gallery => {
-                let at = |mu: f64| self.interface.at(mu, s.alpha);
+                let (at_i, at_o) = self.boundaries(&g, shortening);
                 let mean = self.interface.mean_at(s.alpha);
-                brdf_gallery(s, &g, &at(g.mu_i), &at(g.mu_o), &mean)
+                brdf_gallery(s, &g, &at_i, &at_o, &mean)
             }
-            Tier::Study => self.studied(&g),
+            Tier::Study => self.studied(&g, shortening),
             Tier::Isle => brdf_isle(s, &g),
             Tier::Lambert => brdf_lambert(s),
             Tier::Phong => brdf_phong(s, off),

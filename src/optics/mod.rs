@@ -28,6 +28,7 @@ pub mod photometry;
 pub mod quadrature;
 pub mod refraction;
 pub mod relief;
+pub mod shade;
 pub mod slab;
 pub mod spectrum;
 pub mod study;

@@ -125,6 +125,43 @@ impl Interface {
         sum
     }
 
+    /// As [`Interface::evaluate`] for facets of metal, which let nothing in: `fresnel` is what one
+    /// of them reflects, by the cosine of the light on it.
+    pub fn evaluate_opaque<const C: usize>(
+        &self,
+        w: DVec3,
+        out: DVec3,
+        fresnel: impl Fn(f64) -> [f64; C],
+        rng: &mut Rng,
+    ) -> [f64; C] {
+        let mut sum = [0.0; C];
+        if self.is_smooth() || out.z <= 0.0 {
+            return sum;
+        }
+        let mut ray = Ray::new(w);
+        let mut weight = [1.0; C];
+        while self.reach_facet(&mut ray, rng) {
+            let from = -ray.w;
+            let h = (from + out).normalize_or_zero();
+            if h.z > 0.0 {
+                let density = d_ggx(h.x * h.x + h.y * h.y, self.alpha) / self.projected(from) / 4.0;
+                let unhindered = (ray.ln_u * self.projected(-out) / out.z).exp();
+                let reflected = fresnel(from.dot(h));
+                for channel in 0..C {
+                    sum[channel] += weight[channel] * reflected[channel] * density * unhindered;
+                }
+            }
+            let h = self.visible_facet(from, rng);
+            let cos = from.dot(h).clamp(0.0, 1.0);
+            let reflected = fresnel(cos);
+            for channel in 0..C {
+                weight[channel] *= reflected[channel];
+            }
+            ray.w = (2.0 * cos * h + ray.w).normalize();
+        }
+        sum
+    }
+
     /// Area of facets, by that of the surface, that are seen from `w`: ∫ D(h) (w·h)⁺ dh
     /// (Heitz et al. 2016, eq. 7). Λ(w) = σ(−w)/w.z.
     pub fn projected(&self, w: DVec3) -> f64 {

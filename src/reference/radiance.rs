@@ -85,6 +85,10 @@ impl<const C: usize> Eye<'_, C> {
             self.absorbers.behind
         };
         for channel in 0..C {
+            // A lamp of one colour, or of one of many pictures that share their walks.
+            if lamp.irradiance[channel] == 0.0 {
+                continue;
+            }
             let kept = absorption[channel].kept(lengths);
             self.radiance[channel] += lamp.irradiance[channel] * factor * kept;
         }

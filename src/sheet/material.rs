@@ -223,68 +223,10 @@ impl Material for PaperMaterial {
             albedo_map,
             display,
         } = key.bind_group_data;
-        let defs: Vec<ShaderDefVal> = [
-            ("TIER_LAMBERT", terms.tier == Tier::Lambert),
-            ("TIER_DRAFT", terms.tier == Tier::Draft),
-            ("TIER_GALLERY", terms.tier == Tier::Gallery),
-            ("TIER_STUDY", terms.tier == Tier::Study),
-            ("COUPLED", terms.tier.is_coupled()),
-            (
-                "PATHS",
-                terms.tier == Tier::Study || terms.tier.is_coupled() && terms.transmission,
-            ),
-            ("TRANSMISSION", terms.transmission),
-            ("TRANSMISSION_MAP", terms.transmission_map),
-            ("OTHER_ALBEDO", terms.other_albedo),
-            ("TIER_ISLE", terms.tier == Tier::Isle),
-            ("TIER_PHONG", terms.tier == Tier::Phong),
-            ("TIER_PHONG_PLAIN", terms.tier == Tier::PhongPlain),
-            ("TIER_BLINN_PHONG", terms.tier == Tier::BlinnPhong),
-            (
-                "TIER_BLINN_PHONG_PLAIN",
-                terms.tier == Tier::BlinnPhongPlain,
-            ),
-            ("TIER_COOK_TORRANCE", terms.tier == Tier::CookTorrance),
-            (
-                "TIER_COOK_TORRANCE_GAUSS",
-                terms.tier == Tier::CookTorranceGauss,
-            ),
-            (
-                "TIER_COOK_TORRANCE_BLINN",
-                terms.tier == Tier::CookTorranceBlinn,
-            ),
-            ("TIER_OREN_NAYAR", terms.tier == Tier::OrenNayar),
-            ("ALBEDO_MAP", albedo_map),
-            ("CURVED", terms.curved),
-            ("NORMAL_MAP", terms.normal_map),
-            ("RELIEF_SHADOWS", terms.relief_shadows),
-            ("ROUGHNESS_MAP", terms.roughness_map),
-            ("OUTLINE", terms.outline),
-            ("EDGE", terms.edge),
-            ("SHARED_UV", terms.shared_uv),
-            ("AMBIENT", terms.ambient),
-            ("AREA_LAMPS", terms.area_lamps),
-            ("DISTANT_LAMPS", terms.distant_lamps),
-            ("IES", terms.ies),
-            ("ONE_LAMP", terms.one_lamp),
-            ("PARALLEL_EYE", terms.parallel_eye),
-            ("OVERLAYS", terms.overlays > 0),
-            ("MATTER", terms.matter > 0),
-            ("MATTER_MORE", terms.matter > 1),
-            ("OTHER_MATTER", terms.other_matter),
-            ("PARTICLES", terms.particles),
-            ("BODY", terms.body),
-            ("MEDIA_INDEX", terms.media_index),
-            ("GLOSS", terms.retro || terms.anisotropic),
-            ("RETRO", terms.retro),
-            ("ANISOTROPIC", terms.anisotropic),
-            ("SHEEN", terms.sheen),
-            ("DISPLAY", display),
-        ]
-        .into_iter()
-        .filter(|(_, needed)| *needed)
-        .map(|(name, _)| name.into())
-        .collect();
+        let defs: Vec<ShaderDefVal> = definitions(&terms, albedo_map, display)
+            .into_iter()
+            .map(Into::into)
+            .collect();
         let mut attributes = vec![
             Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
             Mesh::ATTRIBUTE_UV_0.at_shader_location(1),
@@ -301,4 +243,71 @@ impl Material for PaperMaterial {
         descriptor.primitive.cull_mode = Some(Face::Back);
         Ok(())
     }
+}
+
+/// The names that `paper_material.wgsl` is compiled with; `albedo_map`: the side has a picture;
+/// `display`: it is drawn into a window.
+pub fn definitions(terms: &Terms, albedo_map: bool, display: bool) -> Vec<&'static str> {
+    [
+        ("TIER_LAMBERT", terms.tier == Tier::Lambert),
+        ("TIER_DRAFT", terms.tier == Tier::Draft),
+        ("TIER_GALLERY", terms.tier == Tier::Gallery),
+        ("TIER_STUDY", terms.tier == Tier::Study),
+        ("COUPLED", terms.tier.is_coupled()),
+        (
+            "PATHS",
+            terms.tier == Tier::Study || terms.tier.is_coupled() && terms.transmission,
+        ),
+        ("TRANSMISSION", terms.transmission),
+        ("TRANSMISSION_MAP", terms.transmission_map),
+        ("OTHER_ALBEDO", terms.other_albedo),
+        ("TIER_ISLE", terms.tier == Tier::Isle),
+        ("TIER_PHONG", terms.tier == Tier::Phong),
+        ("TIER_PHONG_PLAIN", terms.tier == Tier::PhongPlain),
+        ("TIER_BLINN_PHONG", terms.tier == Tier::BlinnPhong),
+        (
+            "TIER_BLINN_PHONG_PLAIN",
+            terms.tier == Tier::BlinnPhongPlain,
+        ),
+        ("TIER_COOK_TORRANCE", terms.tier == Tier::CookTorrance),
+        (
+            "TIER_COOK_TORRANCE_GAUSS",
+            terms.tier == Tier::CookTorranceGauss,
+        ),
+        (
+            "TIER_COOK_TORRANCE_BLINN",
+            terms.tier == Tier::CookTorranceBlinn,
+        ),
+        ("TIER_OREN_NAYAR", terms.tier == Tier::OrenNayar),
+        ("ALBEDO_MAP", albedo_map),
+        ("CURVED", terms.curved),
+        ("NORMAL_MAP", terms.normal_map),
+        ("RELIEF_SHADOWS", terms.relief_shadows),
+        ("ROUGHNESS_MAP", terms.roughness_map),
+        ("OUTLINE", terms.outline),
+        ("EDGE", terms.edge),
+        ("SHARED_UV", terms.shared_uv),
+        ("AMBIENT", terms.ambient),
+        ("AREA_LAMPS", terms.area_lamps),
+        ("DISTANT_LAMPS", terms.distant_lamps),
+        ("IES", terms.ies),
+        ("ONE_LAMP", terms.one_lamp),
+        ("PARALLEL_EYE", terms.parallel_eye),
+        ("OVERLAYS", terms.overlays > 0),
+        ("MATTER", terms.matter > 0),
+        ("MATTER_MORE", terms.matter > 1),
+        ("OTHER_MATTER", terms.other_matter),
+        ("PARTICLES", terms.particles),
+        ("BODY", terms.body),
+        ("MEDIA_INDEX", terms.media_index),
+        ("GLOSS", terms.retro || terms.anisotropic),
+        ("RETRO", terms.retro),
+        ("ANISOTROPIC", terms.anisotropic),
+        ("SHEEN", terms.sheen),
+        ("DISPLAY", display),
+    ]
+    .into_iter()
+    .filter(|(_, needed)| *needed)
+    .map(|(name, _)| name)
+    .collect()
 }

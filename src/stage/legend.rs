@@ -49,9 +49,17 @@ pub struct TextCamera {
 #[derive(Component)]
 struct Legend;
 
+/// A TrueType file: the first face that is found, or the one that is part of the program.
+pub fn face() -> Vec<u8> {
+    system_face().unwrap_or_else(|| bevy::text::DEFAULT_FONT_DATA.to_vec())
+}
+
+fn system_face() -> Option<Vec<u8>> {
+    FACES.iter().find_map(|path| std::fs::read(path).ok())
+}
+
 fn load_face(mut commands: Commands, mut fonts: ResMut<Assets<Font>>) {
-    let bytes = FACES.iter().find_map(|path| std::fs::read(path).ok());
-    let handle = bytes
+    let handle = system_face()
         .map(|bytes| fonts.add(Font::from_bytes(bytes)))
         .unwrap_or_default();
     commands.insert_resource(Face(handle));

@@ -15,7 +15,7 @@ use glam::{DAffine2, DVec2};
 
 use crate::{
     manifest::exhibit::{OverlayKind, Surface},
-    maps::{self, Coding, MapError, MatterPart, Pyramid, normal_coding},
+    maps::{self, Coding, MapError, normal_coding},
     needs::MapUse,
     sheet::{mesh::SideSurface, upload},
 };
@@ -193,7 +193,7 @@ impl Library {
         let (anisotropy, reads_unorm16) = (self.anisotropy, self.reads_unorm16);
         rayon::spawn(move || {
             let decoded = unless_panicked(&request.path(), || match &request {
-                Request::Map(map) => load(map).map(|pyramid| {
+                Request::Map(map) => map.load().map(|pyramid| {
                     let facts = Facts {
                         coding: normal_coding(&pyramid.levels[0].texels),
                         bare: maps::bare_albedo(&pyramid),
@@ -265,38 +265,6 @@ fn unless_panicked<T>(
             detail: "its decoder failed".to_owned(),
         })
     })
-}
-
-/// The one place where a map's file becomes texels.
-fn load(map: &MapUse) -> Result<Pyramid, MapError> {
-    let path = &map.file().path;
-    match map {
-        MapUse::Albedo(map) | MapUse::OtherAlbedo(map) => maps::load_colour(path, map.encoding),
-        MapUse::Normal(map) => maps::load_normal(path, map.y),
-        MapUse::NormalFromHeight(map, extent_mm) => {
-            maps::load_normal_from_height(path, map.range_um, *extent_mm)
-        }
-        MapUse::Roughness(map) => maps::load_roughness(path, map.gloss),
-        MapUse::RoughnessOfMatter(stack, paper) => {
-            maps::load_roughness_of_matter(&stack.layers, *paper)
-        }
-        MapUse::Matter(stack) | MapUse::OtherMatter(stack) => {
-            maps::load_matter(&stack.layers, MatterPart::First)
-        }
-        MapUse::MatterMore(stack) => maps::load_matter(&stack.layers, MatterPart::More),
-        MapUse::Outline(_) => maps::load_outline(path),
-        MapUse::Transmission(_) | MapUse::Height(_) => maps::load_height(path),
-        MapUse::Overlay(overlay) => match &overlay.kind {
-            OverlayKind::Categorical(legend) => {
-                let colours: Vec<[u8; 3]> = legend.iter().map(|entry| entry.colour).collect();
-                maps::load_overlay_categorical(path, &colours).map(|map| map.pyramid)
-            }
-            OverlayKind::Continuous { colour_map, .. } => {
-                maps::load_overlay_continuous(path, *colour_map)
-            }
-            OverlayKind::Picture(encoding) => maps::load_overlay_picture(path, *encoding),
-        },
-    }
 }
 
 /// Whether the lamps light an overlay as they light the paper: a photograph in another band

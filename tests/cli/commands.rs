@@ -58,7 +58,6 @@ fn a_mistyped_tier_is_told_all_names() {
 #[test]
 fn commands_of_later_versions_never_succeed() {
     for command in [
-        "tradeoff",
         "prepare",
         "import",
         "export",

@@ -525,9 +525,10 @@ record! {
     pub struct RawAccuracy {
         required {}
         optional {
-            /// The largest colour difference ΔE00 from the exact picture. Without it: 1.
+            /// The largest colour difference ΔE00 from the exact picture, in the mean over the visible
+            /// sheet. Without it: 1.
             max_delta_e: DeltaE,
-            /// The longest time for one frame in ms. Without it: 16.
+            /// The longest time in ms for one frame while something moves. Without it: 16.
             frame_ms: FrameMs,
         }
         rules []

@@ -1,0 +1,194 @@
+//! What a tier shows of one spot of a sheet: the f64 twin of the fragment in
+//! `shaders/paper_material.wgsl`, for judging and predicting tiers without a device.
+
+use std::f64::consts::PI;
+
+use glam::{DQuat, DVec3};
+
+use super::{
+    bsdf::Specimen,
+    ink::{beyond_capture, internal_reflectance, optical_depth},
+    lamp::{Incidence, Light, Shape},
+    matter::passing,
+    microfacet::MU_MIN,
+    refraction::mean_inner_cosine,
+    study::{Seen, through_study},
+    tier::{Surface, Tier, albedo_of, brdf_lambert},
+};
+
+/// A spot of a flat sheet, in the sheet's frame.
+#[derive(Clone, Debug)]
+pub struct Spot {
+    pub specimen: Specimen,
+    /// Unit normal of the relief.
+    pub normal: DVec3,
+    /// Length of the mean normal under the spot, in (0, 1]; 1 on even paper.
+    pub shortening: f64,
+    /// For light through the sheet.
+    pub behind: Behind,
+}
+
+/// What light through the sheet meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Behind {
+    /// Photographed albedo of bare paper on the side that is seen, linear sRGB.
+    pub bare: DVec3,
+    /// Photographed albedo of the other side, here and where it is bare.
+    pub other: DVec3,
+    pub other_bare: DVec3,
+    /// Transmittance of the spot's paper over that of the sheet.
+    pub clear: f64,
+}
+
+/// Light from one direction, with the share of it that the relief lets through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beam {
+    pub incidence: Incidence,
+    pub visible: f64,
+}
+
+/// Everything that lights a spot, pre-exposed as [`Light::amount`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Illumination {
+    pub beams: Vec<Beam>,
+    /// Illuminance of the room's even light.
+    pub ambient: DVec3,
+    /// Radiance of a light table behind the sheet.
+    pub table: DVec3,
+}
+
+impl Spot {
+    /// Bare or inked paper without relief.
+    pub fn flat(specimen: Specimen, behind: Behind) -> Self {
+        Self {
+            specimen,
+            normal: DVec3::Z,
+            shortening: 1.0,
+            behind,
+        }
+    }
+
+    /// Radiance towards `v` (a unit vector in the sheet's frame), in units in which a perfect
+    /// diffuser at the reference illuminance shows 1.
+    pub fn radiance(&self, tier: Tier, v: DVec3, light: &Illumination) -> DVec3 {
+        let upright = DQuat::from_rotation_arc(self.normal, DVec3::Z);
+        let eye = upright * v;
+        let mut radiance = light.table * self.through(tier, eye.z);
+        for beam in &light.beams {
+            let l = upright * beam.incidence.l;
+            if l.z > 0.0 && beam.incidence.l.z > 0.0 && beam.visible > 0.0 {
+                let f = self.specimen.reflected(tier, l, eye, self.shortening);
+                radiance += f * beam.incidence.e * (l.z * beam.visible);
+            }
+        }
+        if light.ambient != DVec3::ZERO {
+            radiance += self.even(tier, eye.z) * light.ambient / PI;
+        }
+        radiance
+    }
+
+    /// π times the radiance under even light of unit illuminance.
+    fn even(&self, tier: Tier, mu_o: f64) -> DVec3 {
+        let s = &self.specimen.surface;
+        if !tier.is_coupled() {
+            return brdf_lambert(s) * PI;
+        }
+        let study = &self.specimen.study;
+        let mean = self.specimen.interface.mean_at(s.alpha);
+        let mu_o = mu_o.max(MU_MIN);
+        let at_o = self.specimen.interface.at(mu_o, s.alpha);
+        let albedo = albedo_of(s, &mean);
+        let mut diffuse = albedo * (at_o.t * mean.t_mean * mean.capture);
+        if tier == Tier::Study {
+            let (capture, path_o) = (self.specimen.capture(), self.specimen.path(mu_o));
+            let depth = self.specimen.depth();
+            let split = &study.split;
+            // Light from everywhere comes in along its mean path.
+            let leaning = split.leaning * (split.inner_mean - mean_inner_cosine(path_o));
+            diffuse *= beyond_capture(depth, capture, study.film.diffuse_path, path_o)
+                * ((1.0 + leaning).max(DVec3::ZERO) * split.at_capture);
+        }
+        diffuse + (1.0 - at_o.t)
+    }
+
+    /// Share of a light table's radiance that is seen through the sheet at cosine `mu_o`.
+    fn through(&self, tier: Tier, mu_o: f64) -> DVec3 {
+        let Specimen {
+            surface: s,
+            interface,
+            study,
+            ..
+        } = &self.specimen;
+        let behind = &self.behind;
+        let crossed_once = |share: DVec3| share.clamp(DVec3::ZERO, DVec3::ONE).map(f64::sqrt);
+        if !tier.is_coupled() {
+            // Light crosses each ink once, where the photograph saw it crossed twice.
+            let baked = crossed_once(s.albedo / behind.bare)
+                * crossed_once(behind.other / behind.other_bare);
+            return study.through.flat_share * behind.clear * baked;
+        }
+        let mean = interface.mean_at(s.alpha);
+        let at_o = interface.at(mu_o.max(MU_MIN), s.alpha);
+        let diffuse = |albedo: DVec3| {
+            let surface = Surface { albedo, ..*s };
+            albedo_of(&surface, &mean)
+        };
+        let share_f = diffuse(s.albedo) / study.bare;
+        let share_b = diffuse(behind.other) / diffuse(behind.other_bare).max(DVec3::splat(1e-3));
+        let film = &study.film;
+        let (capture, path_o) = (
+            self.specimen.capture(),
+            self.specimen.path(mu_o.max(MU_MIN)),
+        );
+        let (seen, baked) = if tier == Tier::Study {
+            let seen = Seen {
+                depth_f: self.specimen.depth(),
+                clear: behind.clear,
+                depth_b: optical_depth(film, capture, share_b),
+                rho_f: internal_reflectance(film, share_f),
+                rho_b: internal_reflectance(film, share_b),
+            };
+            (seen, DVec3::ONE)
+        } else {
+            let r_i = DVec3::splat(1.0 - mean.t_mean / (s.eta * s.eta));
+            let seen = Seen {
+                depth_f: DVec3::ZERO,
+                clear: behind.clear,
+                depth_b: DVec3::ZERO,
+                rho_f: r_i,
+                rho_b: r_i,
+            };
+            (seen, crossed_once(share_f) * crossed_once(share_b))
+        };
+        let passed = passing(&self.specimen.cover, self.specimen.body_through);
+        passed * baked * through_study(film, &study.through, &seen, &at_o, &mean, path_o, s.eta)
+    }
+}
+
+/// The light of `light` at `p` (mm) as `tier` sees it, all of it visible: draft takes lamps with
+/// an area for points in their middle.
+pub fn beams(tier: Tier, light: &Light, p: DVec3) -> Vec<Beam> {
+    let as_point = |centre, axis| Light {
+        shape: Shape::Rectangle {
+            centre,
+            axis,
+            half_u: DVec3::ZERO,
+            half_v: DVec3::ZERO,
+            grid: 1,
+        },
+        amount: light.amount,
+    };
+    let incidences = match light.shape {
+        Shape::Rectangle { centre, axis, .. } | Shape::Disc { centre, axis, .. }
+            if tier == Tier::Draft =>
+        {
+            as_point(centre, axis).at(p)
+        }
+        _ => light.at(p),
+    };
+    let beam = |incidence| Beam {
+        incidence,
+        visible: 1.0,
+    };
+    incidences.into_iter().map(beam).collect()
+}
