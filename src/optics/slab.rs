@@ -110,13 +110,28 @@ impl Slab {
         }
     }
 
+    /// Share of the light that has entered which comes back, both boundaries included: that of
+    /// [`Self::with_boundaries`], less what diffusion gives too much where absorption is strong.
+    ///
+    /// The walk finds (n = 1.5, α = .6, σs 81.38, d .15, g 1/3) 1.0, .97 and .87 of diffusion's
+    /// reflectance for σa = 1, 2 and 5 mm⁻¹, where σa/(σa + σs′) is .018, .036 and .084.
+    pub fn reflectance(&self, r_i: f64, inner: f64) -> f64 {
+        const STRENGTH: f64 = 2.35;
+        const ONSET: f64 = 0.03;
+        let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
+        let absorbed = self.absorption / (self.absorption + sigma_s);
+        let (reflected, _) = self.with_boundaries(r_i, inner);
+        reflected * (-STRENGTH * absorbed * absorbed / (absorbed + ONSET)).exp()
+    }
+
     /// The same slab with the absorption that makes it, over a back boundary of reflectance
     /// `r_i`, reflect the share `r_b` of diffuse light from within; without absorption where
     /// even that is too dark.
     pub fn absorbing_to(self, r_b: f64, r_i: f64, inner: f64) -> Self {
         let lit = |absorption: f64| {
             let slab = Self { absorption, ..self };
-            slab.body(r_i, inner).backed(r_i)
+            let from_within = slab.reflectance(r_i, inner) / (1.0 - r_i);
+            from_within / (1.0 + r_i * from_within)
         };
         let (mut low, mut high) = (0.0, 1.0);
         if lit(low) <= r_b {
@@ -233,7 +248,8 @@ mod tests {
     fn absorption_is_found_again() {
         for absorption in [0.0, 1e-3, 0.05, 0.5, 5.0] {
             let slab = slab(81.38, absorption, 0.15);
-            let r_b = slab.body(R_I, 1.0).backed(R_I);
+            let from_within = slab.reflectance(R_I, 1.0) / (1.0 - R_I);
+            let r_b = from_within / (1.0 + R_I * from_within);
             let found = slab.absorbing_to(r_b, R_I, 1.0).absorption;
             assert!(
                 (found - absorption).abs() < 1e-9 + 1e-6 * absorption,

@@ -226,7 +226,7 @@ impl Split {
             at_capture: DVec3::ONE,
             depth: per_channel(slabs, depth).element_sum() / 3.0,
             leaning: {
-                let reflected = |slab: &Slab, inner| slab.with_boundaries(r_i, inner).0;
+                let reflected = |slab: &Slab, inner| slab.reflectance(r_i, inner);
                 let mean = per_channel(slabs, |slab| reflected(slab, inner_mean));
                 -slope(slabs, reflected) / mean.max(DVec3::splat(1e-6))
             },
@@ -339,8 +339,15 @@ impl Through {
             rho_f: DVec3::splat(r_i),
             rho_b: DVec3::splat(r_i),
         };
-        through.flat_share = crossing(&through, &bare, inner_mean, DVec3::splat(inner_mean), eta)
-            * (mean.t_mean * mean.t_mean);
+        // Where absorption is strong, the adding of diffuse passes loses some of what diffusion
+        // between the boundaries lets through.
+        let steps = crossing(&through, &bare, inner_mean, DVec3::splat(inner_mean), eta);
+        let whole = per_channel(slabs, |slab| slab.with_boundaries(r_i, inner_mean).1);
+        let gain = whole / (steps * mean.t_mean).max(DVec3::splat(1e-30));
+        let gain = gain.clamp(DVec3::splat(0.5), DVec3::splat(2.0));
+        through.transmitted *= gain;
+        through.transmitted_leaning *= gain;
+        through.flat_share = whole * mean.t_mean;
         through
     }
 }
