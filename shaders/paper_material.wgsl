@@ -15,9 +15,9 @@
 #import "embedded://recto/paper_media.wgsl"::{
     CAPTURE_COS_D, SHEEN_MEAN,
     Cover, Particle,
-    albedo_under_sheen, alpha_towards, brdf_body, brdf_gloss, brdf_sheen, combed_capture, gloss_lobe,
+    albedo_under_sheen, alpha_towards, borne_out, brdf_body, brdf_gloss, brdf_sheen, combed_capture, gloss_lobe,
     gloss_lobe_anisotropic, interface_of, mean_of, particle_capture, particle_gloss, particle_lobe,
-    passing, shares_of, sheen_albedo, turned, uncovered_share, under_sheen, veiled,
+    passing, shares_of, sheen_albedo, turned, uncovered_share, under_sheen, veiled, with_borne,
 }
 
 #ifdef RELIEF_SHADOWS
@@ -568,6 +568,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     at_o = interface_of(at_o, reflects);
 #endif
 #ifdef MATTER
+#ifdef PARTICLES
+    let borne = borne_out(s, mean, paper.lit_bare, paper.media.body_albedo, cover);
+    cover = with_borne(cover, borne);
+#endif
     let shares = shares_of(s, mean, paper.lit_bare, paper.media.body_albedo, cover);
     let paper_albedo = shares.paper;
     let surface = shares.surface;
@@ -601,7 +605,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     var grain_alphas = array<f32, 6>();
     var grains = vec3(0.0);
     for (var k = 0u; k < paper.media.particle_count; k++) {
-        let covered = coverages[k];
+        let covered = coverages[k] * borne;
         if covered > 0.0 {
             let particle = paper.media.particles[k];
             var grain_alpha = particle.alpha;
@@ -627,14 +631,16 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef OTHER_MATTER
     let other_particles = other_matter.z;
     let other_open = max(1.0 - other_particles - other_matter.y, 0.0);
-    let other_cover = Cover(
+    var other_cover = Cover(
         clamp(other_matter.x / max(other_open, 1e-4), 0.0, 1.0), other_matter.y, other_particles,
         paper.media.other_grains * other_particles,
     );
-    let other = shares_of(
-        Surface(other_albedo, alpha, eta, paper.f_normal, paper.specular, f_capture), mean,
-        paper.other_bare, paper.media.other_body_albedo, other_cover,
+    let of_other = Surface(other_albedo, alpha, eta, paper.f_normal, paper.specular, f_capture);
+    let other_body = paper.media.other_body_albedo;
+    other_cover = with_borne(
+        other_cover, borne_out(of_other, mean, paper.other_bare, other_body, other_cover),
     );
+    let other = shares_of(of_other, mean, paper.other_bare, other_body, other_cover);
     let share_b = max(uncovered_share(other, paper.other_bare), vec3(0.0));
 #else
     let share_b = max(other_albedo - capture_floor(s, mean), vec3(0.0)) / paper.other_bare;

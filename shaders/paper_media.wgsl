@@ -32,6 +32,33 @@ struct Shares {
     lit: vec3<f32>,
 }
 
+fn borne_out(
+    s: Surface,
+    mean: InterfaceMean,
+    bare: vec3<f32>,
+    body: vec3<f32>,
+    cover: Cover,
+) -> f32 {
+    let floor = capture_floor(s, mean);
+    let around = bare * (1.0 - cover.body) + body * cover.body + floor;
+    let less = (bare + floor) * cover.particles - cover.grains;
+    let found = dot(around - s.albedo, less);
+    let whole = dot(less, less);
+    if whole < 1e-8 {
+        return 1.0;
+    }
+    return clamp(found / whole, 0.0, 1.0);
+}
+
+fn with_borne(cover: Cover, borne: f32) -> Cover {
+    let particles = cover.particles * borne;
+    let before = max(1.0 - cover.particles - cover.body, 0.0);
+    let after = max(1.0 - particles - cover.body, SHARE_LEAST);
+    return Cover(
+        min(cover.film * before / after, 1.0), cover.body, particles, cover.grains * borne,
+    );
+}
+
 fn shares_of(
     s: Surface,
     mean: InterfaceMean,

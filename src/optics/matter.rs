@@ -2,8 +2,8 @@
 //! particles, and what body colour and particles do with light.
 //!
 //! A spot is a mixture, by area, of bare or inked paper, of body colour that hides it, and of
-//! opaque particles. The shares are known from maps, and the photograph of the whole spot: each
-//! part is lit in proportion to what its constants say, except that ink, whose depth nobody
+//! opaque particles. The shares are known from maps, those of particles as far as the photograph
+//! bears them out, and the photograph of the whole spot: each part is lit in proportion to what its constants say, except that ink, whose depth nobody
 //! knows beforehand, takes the darkness upon itself. So at 45°/0° the parts together are the
 //! photograph again.
 
@@ -67,6 +67,42 @@ pub struct Cover {
     pub particles: f64,
     /// What these particles photograph as by their constants: the sum of albedo × coverage.
     pub grains: DVec3,
+}
+
+/// Share of the particles' stated coverage that a spot's photograph bears out, in [0, 1]: a map
+/// that names a medium covers its strokes wholly, but a faint stroke of metal or chalk is paper
+/// between sparse grains. The coverage that, with bare paper and body colour around it, is
+/// nearest to the photograph by least squares over the channels; ink beside it only darkens, and
+/// then all is borne out. `bare` and `body` as for [`shares_of`].
+pub fn borne_out(
+    s: &Surface,
+    mean: &InterfaceMean,
+    bare: DVec3,
+    body: DVec3,
+    cover: &Cover,
+) -> f64 {
+    let floor = capture_floor(s, mean);
+    let around = bare * (1.0 - cover.body) + body * cover.body + floor;
+    let less = (bare + floor) * cover.particles - cover.grains;
+    let found = (around - s.albedo).dot(less);
+    let whole = less.dot(less);
+    if whole < 1e-8 {
+        return 1.0;
+    }
+    (found / whole).clamp(0.0, 1.0)
+}
+
+/// The cover of which the share `borne` of the particles is left.
+pub fn with_borne(cover: &Cover, borne: f64) -> Cover {
+    let particles = cover.particles * borne;
+    let before = (1.0 - cover.particles - cover.body).max(0.0);
+    let after = (1.0 - particles - cover.body).max(SHARE_LEAST);
+    Cover {
+        film: (cover.film * before / after).min(1.0),
+        body: cover.body,
+        particles,
+        grains: cover.grains * borne,
+    }
 }
 
 /// A spot's photograph, divided.

@@ -59,6 +59,57 @@ fn shader_and_f64_agree_about_every_tier() {
 }
 
 #[test]
+fn every_kind_of_medium_has_its_light_at_study_and_the_article_has_its_own() {
+    let sheet = Sheet::new();
+    let file = sheet.out("pairs.csv");
+    fs::write(&file, PAIRS).unwrap();
+    let file = file.to_str().unwrap();
+    let evaluate = |medium: &str, optics: &str, device: &str| {
+        let of = [
+            "bsdf",
+            "--medium",
+            medium,
+            "--albedo",
+            "0.3,0.2,0.1",
+            "--tier",
+            "study",
+        ];
+        let how = ["--optics", optics, "--device", device, "--pairs", file];
+        let output = run(&[&of[..], &how].concat());
+        assert_eq!(code(&output, 0), "", "{medium}");
+        table(stdout(&output))
+    };
+    // Of each matter; through those that only cover, no light comes.
+    for (medium, passes) in [
+        ("parchment", true),
+        ("iron-gall-ink", true),
+        ("wash", true),
+        ("silver-point", false),
+        ("red-chalk", false),
+        ("white-gouache", true),
+        ("tinted-ground", true),
+        ("blind-stylus", true),
+    ] {
+        let [cpu, gpu] = ["cpu", "gpu"].map(|device| evaluate(medium, "recto", device));
+        for (row, (cpu, gpu)) in cpu.iter().zip(&gpu).enumerate() {
+            for (a, b) in cpu.iter().zip(gpu) {
+                let sound = a.is_finite() && (a - b).abs() <= RELATIVE * a.abs();
+                assert!(sound, "{medium}, row {row}: {cpu:?} {gpu:?}");
+            }
+            assert_eq!(cpu[4] > 0.0, row < 4 || passes, "{medium}, row {row}");
+        }
+        // The first pair is the photograph's.
+        let shown = [0, 1, 2].map(|c| std::f64::consts::PI * cpu[0][4 + c]);
+        for (shown, albedo) in shown.into_iter().zip([0.3, 0.2, 0.1]) {
+            assert!((shown - albedo).abs() < 1e-3, "{medium}: {shown}");
+        }
+        let article = evaluate(medium, "isle-2021", "cpu");
+        let printed = ["parchment", "iron-gall-ink", "silver-point"].contains(&medium);
+        assert_eq!(article != cpu, printed, "{medium}");
+    }
+}
+
+#[test]
 fn faults_of_pairs_are_named_all_at_once() {
     let sheet = Sheet::new();
     let file = sheet.out("pairs.csv");

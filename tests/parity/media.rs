@@ -7,8 +7,8 @@ use recto::{
             gloss_lobe_anisotropic, sheen_albedo, turned, under_sheen,
         },
         matter::{
-            Cover, Particle, Shares, brdf_body, interface_of, mean_of, particle_capture,
-            particle_gloss, particle_lobe, passing, shares_of, uncovered_share, veiled,
+            Cover, Particle, Shares, borne_out, brdf_body, interface_of, mean_of, particle_capture,
+            particle_gloss, particle_lobe, passing, shares_of, uncovered_share, veiled, with_borne,
         },
     },
     sheet::PAPER_MEDIA,
@@ -121,10 +121,19 @@ fn divided() -> Twins {
             colour_at(6),
             colour_at(0),
             colour_at(9),
-            outputs(&sums, &["shares.surface", "shares.uncovered"]),
+            outputs(
+                &sums,
+                &[
+                    "shares.surface",
+                    "shares.uncovered",
+                    "borne_out(s, mean, bare, body, cover)",
+                    "with_borne(cover, 0.25).film",
+                    "with_borne(cover, 0.25).particles",
+                ]
+            ),
         ),
         twin: |x| {
-            let (_, _, shares, cover) = spot(x);
+            let (s, mean, shares, cover) = spot(x);
             let bare = colour(x, 3);
             let of_open = uncovered_share(&shares, bare) * bare * shares.uncovered.max(1e-4);
             flat(
@@ -137,7 +146,13 @@ fn divided() -> Twins {
                     passing(&cover, colour(x, 6)),
                     veiled(&cover, colour(x, 6), bare),
                 ],
-                &[shares.surface, shares.uncovered],
+                &[
+                    shares.surface,
+                    shares.uncovered,
+                    borne_out(&s, &mean, bare, colour(x, 6), &cover),
+                    with_borne(&cover, 0.25).film,
+                    with_borne(&cover, 0.25).particles,
+                ],
             )
         },
         relative: |_| RELATIVE,
@@ -155,9 +170,12 @@ fn rounding_of_albedos(x: &[f64]) -> f64 {
     let open = (1.0 - cover[1] - cover[2]).max(0.0);
     let expected = covered + colour(x, 3) * open;
     let told = (colour(x, 3) / expected.max(DVec3::splat(1e-6))).max_element();
+    // A quotient of sums of products of differences.
+    let less = (colour(x, 3) + capture_floor(&s, &mean)) * cover[2] - colour(x, 9);
+    let borne = terms * terms / less.dot(less).max(1e-8);
     // So it is against what body colour lets through.
     let passes = open + 1e-6 + cover[1] * colour(x, 6).min_element();
-    4.0 * terms * UNIT_PRODUCT * (1.0 + told) + UNIT_PRODUCT / passes
+    4.0 * terms * UNIT_PRODUCT * (1.0 + told + borne) + UNIT_PRODUCT / passes
 }
 
 fn particles() -> Twins {

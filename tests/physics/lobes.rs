@@ -25,7 +25,7 @@ const TABLE: f64 = 1e-3;
 /// Four lamps stand for all around: too few for a lobe as narrow as full anisotropy makes
 /// that of α = .2. Measured .0076 there.
 const FULL_GRAIN: f64 = 0.01;
-const STEPS: u32 = 256;
+const STEPS: u32 = 160;
 
 fn towards(theta: f64, phi: f64) -> DVec3 {
     let ((sin, cos), phi) = (theta.to_radians().sin_cos(), phi.to_radians());

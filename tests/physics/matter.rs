@@ -12,9 +12,9 @@ use recto::{
     optics::{
         ink::{capture_path, optical_depth},
         matter::{
-            Cover, Media, Shares, SideMedia, brdf_body, interface_of, layer_of_pigment, mean_of,
-            particle_capture, particle_gloss, particle_lobe, passing, shares_of, uncovered_share,
-            veiled,
+            Cover, Media, Shares, SideMedia, borne_out, brdf_body, interface_of, layer_of_pigment,
+            mean_of, particle_capture, particle_gloss, particle_lobe, passing, shares_of,
+            uncovered_share, veiled, with_borne,
         },
         medium::{Matter, MediumId},
         refraction::PathTable,
@@ -476,4 +476,35 @@ fn ink_beside_gouache_darkens_only_what_it_covers() {
     assert!((all(&cover(1.0, 0.0)).x - 0.25).abs() < 1e-5);
     assert!((all(&cover(0.0, 0.0)).x - (-2.0_f64).exp()).abs() < 1e-5);
     assert_eq!(all(&cover(0.0, 1.0)), DVec3::ZERO);
+}
+
+#[test]
+fn a_faint_stroke_is_paper_between_sparse_grains() {
+    let side = &sides()[0];
+    let spot = Spot::new(side, 0.0, 0.0, &[0.0, 1.0, 0.0, 0.0, 0.0]);
+    let (bare, silver) = (side.surface.albedo, spot.cover.grains);
+    let found = |albedo: DVec3| {
+        let surface = Surface {
+            albedo,
+            ..side.surface
+        };
+        let (bare, body) = (side.study.bare, side.media.body_albedo);
+        borne_out(&surface, &side.mean, bare, body, &spot.cover)
+    };
+    for share in [0.0, 0.1, 0.5, 1.0] {
+        let borne = found(bare.lerp(silver, share));
+        assert!((borne - share).abs() < 1e-6, "{share}: {borne}");
+    }
+    // Lighter than the paper is no silver, and darker than silver is all of it.
+    assert_eq!(found(DVec3::ONE), 0.0);
+    assert_eq!(found(0.5 * silver), 1.0);
+    let left = with_borne(&spot.cover, 0.25);
+    assert!((left.particles - 0.25).abs() < 1e-12 && left.film == 0.0);
+    // Ink keeps its own area when there is more paper around it.
+    let inked = with_borne(&Spot::new(side, 0.5, 0.0, &[0.5]).cover, 0.5);
+    assert!((inked.film - 0.5 / 0.75).abs() < 1e-12, "{inked:?}");
+    // Where nothing is stated nothing is in question.
+    let none = Spot::new(side, 0.0, 0.0, &[]).cover;
+    let (bare, body) = (side.study.bare, side.media.body_albedo);
+    assert_eq!(borne_out(&side.surface, &side.mean, bare, body, &none), 1.0);
 }
