@@ -20,7 +20,7 @@
 //!   the thickness of both (`sheet`); of several on one side, the first stands for all.
 //! - Grains are opaque facets that mirror, beside even light of the rest of the photograph
 //!   (`media`). Light neither passes between them and the paper nor under them.
-//! - Whatever lies on the other side is a film to light from behind.
+//! - On the other side grains stop light from behind; all else there is a film to it.
 //! - A transmission map is uneven thickness (`through`).
 //! - A surface as smooth as a mirror does not show the lamps.
 
@@ -375,7 +375,7 @@ impl Inks for InkMap<'_> {
         let place = self.place + DVec2::new(away.x, -away.y);
         match face {
             Face::Front => self.sheet.front_tau(place, rng),
-            Face::Back => self.sheet.back_tau(place),
+            Face::Back => self.sheet.back_tau(place, rng),
         }
     }
 }

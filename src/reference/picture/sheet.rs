@@ -36,12 +36,16 @@ struct Overlay {
     is_lit: bool,
 }
 
-/// The other side's ink, for light from behind.
+/// What lies on the other side, for light from behind.
 struct Behind {
     albedo: Field,
     /// From its photograph to that of ink on this side's paper.
     scale: [f64; 3],
+    media: Option<Media>,
 }
+
+/// Optical depth of a grain: nothing passes.
+const OPAQUE: f64 = 1e3;
 
 pub(super) struct Sheet {
     pub shape: Shape,
@@ -209,7 +213,7 @@ impl Sheet {
     pub fn spot(&self, place: DVec2, albedo: [f64; 3], rng: &mut Rng) -> Spot {
         let alpha = self.alpha(place);
         let Some(media) = &self.media else {
-            return self.layered(place, self.tones.film(albedo, alpha), alpha);
+            return self.layered(place, self.tones.film(albedo, alpha), alpha, rng);
         };
         let shares = media.shares(place);
         let (bare, floor) = (self.tones.bare(alpha), self.tones.floor(alpha));
@@ -219,7 +223,7 @@ impl Sheet {
         }
         let choice = uniform(rng) * (1.0 - shares.covered());
         if choice < shares.film {
-            return self.layered(place, self.tones.film(divided.paper, alpha), alpha);
+            return self.layered(place, self.tones.film(divided.paper, alpha), alpha, rng);
         }
         match &self.body {
             Some((slab, tones)) if choice < shares.film + shares.body => {
@@ -234,11 +238,11 @@ impl Sheet {
                     behind: absorption,
                 }
             }
-            _ => self.layered(place, self.tones.paper(divided.paper, alpha), alpha),
+            _ => self.layered(place, self.tones.paper(divided.paper, alpha), alpha, rng),
         }
     }
 
-    fn layered(&self, place: DVec2, tone: Tone, alpha: f64) -> Spot {
+    fn layered(&self, place: DVec2, tone: Tone, alpha: f64, rng: &mut Rng) -> Spot {
         let mut layers = Layers {
             alpha: [alpha, self.layers.alpha[1]],
             ..self.layers
@@ -250,7 +254,7 @@ impl Sheet {
         Spot::Layered {
             layers,
             before: tone.absorption([0.0; 3]),
-            behind: tone.absorption(self.back_tau(place)),
+            behind: tone.absorption(self.back_tau(place, rng)),
         }
     }
 
@@ -272,14 +276,25 @@ impl Sheet {
         self.tones.film(divided.paper, alpha).tau
     }
 
-    /// Of the film on the other side.
-    pub fn back_tau(&self, place: DVec2) -> [f64; 3] {
+    /// Of what lies on the other side: a film, or a grain that a path finds there as likely as its
+    /// share.
+    pub fn back_tau(&self, place: DVec2, rng: &mut Rng) -> [f64; 3] {
         let Some(behind) = &self.behind else {
             return [0.0; 3];
         };
         let seen: [f64; 3] = behind.albedo.at(place);
-        let on_this = std::array::from_fn(|c| seen[c] * behind.scale[c]);
-        self.tones.film(on_this, self.layers.alpha[1]).tau
+        let mut on_this = std::array::from_fn(|c| seen[c] * behind.scale[c]);
+        let alpha = self.layers.alpha[1];
+        if let Some(media) = &behind.media {
+            let shares = media.shares(place);
+            let (bare, floor) = (self.tones.bare(alpha), self.tones.floor(alpha));
+            let divided = media.divided(&shares, on_this, bare, floor, rng);
+            if divided.grain.is_some() {
+                return [OPAQUE; 3];
+            }
+            on_this = divided.paper;
+        }
+        self.tones.film(on_this, alpha).tau
     }
 }
 
@@ -432,7 +447,16 @@ fn through(
             let of_other = paper.albedo.unwrap_or_else(|| maps::bare_albedo(&pyramid));
             let place = map.file.uv_from_side * drawing.recto_from(SideName::Verso);
             let scale = std::array::from_fn(|c| bare[c] / of_other[c].max(1e-3));
-            Field::new(pyramid, place).map(|albedo| Behind { albedo, scale })
+            let mut drawn = side.media.clone();
+            for map in &mut drawn {
+                map.file.uv_from_side *= drawing.recto_from(SideName::Verso);
+            }
+            let media = Media::load(exhibit, &drawn, paths, seed)?;
+            Field::new(pyramid, place).map(|albedo| Behind {
+                albedo,
+                scale,
+                media,
+            })
         }
         None => None,
     };
