@@ -18,9 +18,9 @@ pub struct Arguments {
     /// The scene to begin with
     #[arg(long, value_name = "ID")]
     scene: Option<String>,
-    /// How exactly light is calculated
-    #[arg(long, default_value_t, value_parser = options::tier())]
-    tier: Tier,
+    /// How exactly light is calculated; without it, as exactly as the exhibit asks
+    #[arg(long, value_parser = options::tier())]
+    tier: Option<Tier>,
     /// Width and height of the display's visible area in mm, for true size
     #[arg(long, value_name = "WxH", value_parser = options::display_mm)]
     display_mm: Option<[f64; 2]>,

@@ -8,7 +8,7 @@ use std::{
 
 use super::{Failure, output};
 use crate::{
-    cost::{self, Composer, Effort, MeasureError, Stopwatch, median},
+    cost::{self, Composer, Effort, MeasureError, Stopwatch, least},
     manifest::{Exhibit, Faults, Scene},
     maps::encode,
     needs::Needs,
@@ -118,10 +118,10 @@ fn scene_costs(
             times.extend(watch.time(shown(tier))?);
         }
     }
-    let floor = median(&mut floor);
+    let floor = least(&floor);
     let pixels = f64::from(SIZE[0]) * f64::from(SIZE[1]);
-    let costs = Tier::ALL.into_iter().zip(&mut times).map(|(tier, times)| {
-        let ms = median(times);
+    let costs = Tier::ALL.into_iter().zip(&times).map(|(tier, times)| {
+        let ms = least(times);
         let cost = Cost {
             ratio: ms / floor.max(f64::MIN_POSITIVE),
             ns: ms * 1e6 / pixels,

@@ -3,7 +3,7 @@
 use std::{fs, path::PathBuf};
 
 use super::{
-    CompileError, Composer, CostError, Sheets, SheetsError, Stopwatch, instructions, median,
+    CompileError, Composer, CostError, Sheets, SheetsError, Stopwatch, instructions, least,
 };
 use crate::{
     device,
@@ -124,10 +124,10 @@ fn costs(
             }
         }
     }
-    let floor = median(&mut floor);
+    let floor = least(&floor);
     let pixels = f64::from(effort.size[0]) * f64::from(effort.size[1]);
-    let costs = tiers.iter().zip(&mut times).map(|(tier, times)| {
-        let ms = median(times);
+    let costs = tiers.iter().zip(&times).map(|(tier, times)| {
+        let ms = least(times);
         let cost = Cost {
             ratio: ms / floor.max(f64::MIN_POSITIVE),
             ns: ms * 1e6 / pixels,

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use bevy::{
     asset::io::embedded::EmbeddedAssetRegistry,
+    camera::visibility::NoFrustumCulling,
     ecs::system::SystemParamItem,
     mesh::MeshVertexBufferLayoutRef,
     pbr::{MaterialPipeline, MaterialPipelineKey},
@@ -156,12 +157,11 @@ impl Floor {
     /// # Errors
     /// [`CostError`] where there is not exactly one sheet.
     pub fn lay(world: &mut World) -> Result<(), CostError> {
-        let (entity, _, material) = sheet(world)?;
+        let (entity, mesh, material) = sheet(world)?;
+        // An entity whose material is exchanged for one of another kind is not drawn any more.
+        world.despawn(entity);
         let floor = world.resource_mut::<Assets<Self>>().add(Self(material));
-        world
-            .entity_mut(entity)
-            .remove::<MeshMaterial3d<PaperMaterial>>()
-            .insert(MeshMaterial3d(floor));
+        world.spawn((mesh, MeshMaterial3d(floor), NoFrustumCulling));
         Ok(())
     }
 }

@@ -11,4 +11,4 @@ pub use cache::{Effort, MeasureError, STEPS, device_name, keep, known, measure, 
 pub use compiled::{CompileError, Composer, instructions};
 pub use floor::{Floor, FloorPlugin};
 pub use sheets::{Sheets, SheetsError};
-pub use stopwatch::{CostError, PASS, Stopwatch, median, sheet, spans};
+pub use stopwatch::{CostError, PASS, Stopwatch, least, median, sheet, spans};

@@ -111,6 +111,11 @@ pub fn spans(room: &mut Darkroom, warm_up: usize, frames: usize) -> Result<Vec<f
     Ok(spans)
 }
 
+/// The least of `samples`, 0 of none: what else a machine does only ever adds.
+pub fn least(samples: &[f64]) -> f64 {
+    samples.iter().copied().reduce(f64::min).unwrap_or_default()
+}
+
 /// The middle of `samples`, which it sorts; 0 of none.
 pub fn median(samples: &mut [f64]) -> f64 {
     samples.sort_by(f64::total_cmp);

@@ -1,10 +1,14 @@
 //! Which tier serves a scene.
 
 use super::{
-    scene::Forecast,
+    scene::{Forecast, MapFault, Maps, Sampled},
     table::{Cost, Table},
 };
-use crate::{needs::Terms, optics::tier::Tier};
+use crate::{
+    manifest::exhibit::{Exhibit, Scene},
+    needs::{Needs, Terms},
+    optics::tier::Tier,
+};
 
 /// A prediction may be too low by this factor at a scene that keeps its bound: the bound is kept in
 /// 95 of 100 held-out scenes with it.
@@ -42,6 +46,44 @@ impl Costs {
     pub fn get(&self, tier: Tier) -> Option<Cost> {
         let mut costs = self.0.iter();
         costs.find(|(of, _)| *of == tier).map(|(_, cost)| *cost)
+    }
+}
+
+/// What is to be expected of every tier in a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outlook {
+    pub forecasts: Vec<Forecast>,
+    pub costs: Costs,
+}
+
+impl Outlook {
+    /// Of `scene` in a picture of `size` pixels, at the costs of `table`.
+    ///
+    /// # Errors
+    /// [`MapFault`] of the first map that cannot be read.
+    pub fn of(
+        exhibit: &Exhibit,
+        scene: &Scene,
+        size: [u32; 2],
+        maps: &mut Maps,
+        table: &Table,
+    ) -> Result<Self, MapFault> {
+        let needs = Needs::of(exhibit, scene, Tier::Study, false);
+        let side = needs.sides.first();
+        Ok(Self {
+            forecasts: Sampled::new(exhibit, scene, size, maps)?.forecasts(),
+            costs: side.map_or_else(Costs::default, |side| Costs::of(table, &side.terms)),
+        })
+    }
+
+    /// See [`at_rest`].
+    pub fn at_rest(&self, max_delta_e: f64) -> (Tier, bool) {
+        at_rest(&self.forecasts, &self.costs, max_delta_e)
+    }
+
+    /// See [`in_motion`].
+    pub fn in_motion(&self, wanted: Tier, frame_ms: f64, ms: impl Fn(Tier) -> Option<f64>) -> Tier {
+        in_motion(&self.forecasts, wanted, frame_ms, ms)
     }
 }
 

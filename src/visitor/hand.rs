@@ -70,6 +70,15 @@ struct Good {
     view: View,
 }
 
+/// Tiers for what is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Serving {
+    /// The cheapest that is as exact as the exhibit asks.
+    pub at_rest: Tier,
+    /// The most exact, up to that one, whose frames come fast enough.
+    pub in_motion: Tier,
+}
+
 /// What became of a wish that cannot be shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Retreat {
@@ -92,10 +101,13 @@ pub struct Hand {
     scene: usize,
     view: View,
     tier: Tier,
+    /// Nobody asked for a tier: the accuracy that the exhibit asks for decides.
+    free: bool,
+    serving: Option<Serving>,
     picture: Picture,
     /// Motion is reduced to cuts.
     calm: bool,
-    /// The cheapest tier is good enough just now.
+    /// A cheaper tier is good enough just now.
     hurried: bool,
     /// How the sheet is turned from rest: a rotation vector in the table's plane, in degrees.
     turn: DVec2,
@@ -133,6 +145,8 @@ impl Hand {
             scene,
             view,
             tier,
+            free: false,
+            serving: None,
             picture,
             calm,
             hurried: false,
@@ -234,7 +248,9 @@ impl Hand {
                 self.enter(next);
             }
             Intent::StepTier(by) => {
-                let at = Tier::ALL.iter().position(|tier| *tier == self.tier);
+                let from = self.tier_at_rest();
+                let at = Tier::ALL.iter().position(|tier| *tier == from);
+                self.free = false;
                 self.tier = Tier::ALL[wrapped(at.unwrap_or_default(), by, Tier::ALL.len())];
             }
             Intent::Caption | Intent::Keys | Intent::Fullscreen | Intent::Quit => {}
@@ -315,8 +331,15 @@ impl Hand {
         Shown {
             exhibit: self.lit.clone(),
             scene,
-            tier: match self.tier {
-                Tier::Gallery | Tier::Study if self.hurried => Tier::Draft,
+            tier: match self.tier_at_rest() {
+                tier @ (Tier::Gallery | Tier::Study) if self.hurried => {
+                    self.serving
+                        .map_or(Tier::Draft, |serving| match serving.in_motion {
+                            // Of another wish, which was dearer.
+                            Tier::Study if tier == Tier::Gallery => tier,
+                            in_motion => in_motion,
+                        })
+                }
                 tier => tier,
             },
             pose,
@@ -325,20 +348,44 @@ impl Hand {
         }
     }
 
-    /// Something moves and frames come too slowly: the cheapest tier, or again the one that was
-    /// asked for. Tiers from the literature are never replaced.
+    /// Nobody asked for a tier: what is served decides, and until then the one of
+    /// [`Hand::new`].
+    pub fn leave_tier_free(&mut self) {
+        self.free = true;
+    }
+
+    /// The tier that somebody asked for.
+    pub fn wanted(&self) -> Option<Tier> {
+        (!self.free).then_some(self.tier)
+    }
+
+    /// Tiers for what is shown, as they are predicted; `None` while nothing is known.
+    pub fn serve(&mut self, serving: Option<Serving>) {
+        self.serving = serving;
+    }
+
+    fn tier_at_rest(&self) -> Tier {
+        match self.serving {
+            Some(serving) if self.free => serving.at_rest,
+            _ => self.tier,
+        }
+    }
+
+    /// Something moves and frames come too slowly: the tier that is served in motion, the cheapest
+    /// while nothing is known, or again the one at rest. Tiers from the literature are never
+    /// replaced.
     pub fn hurry(&mut self, hurried: bool) {
         self.hurried = hurried;
     }
 
-    /// Whether the cheapest tier is good enough just now.
+    /// Whether a cheaper tier is good enough just now.
     pub fn is_hurried(&self) -> bool {
         self.hurried
     }
 
-    /// The tier that was asked for, which a hurried picture may not have.
+    /// The tier at rest, which a hurried picture may not have.
     pub fn tier(&self) -> Tier {
-        self.tier
+        self.tier_at_rest()
     }
 
     /// Where the lamp stands that the hand moves.

@@ -6,10 +6,12 @@
 //! | [`Intent`] and time → [`Hand`] | [`hand`], `view`, `lamp`, `motion` |
 //! | [`Hand`] → [`crate::stage::Shown`] | [`Hand::shown`] |
 //! | texts | `caption` |
+//! | which tier serves what is shown | `foresight` |
 //! | the window, and its rest | `window` |
 
 mod caption;
 mod display;
+mod foresight;
 pub mod hand;
 mod input;
 mod intent;
@@ -22,7 +24,7 @@ use std::{path::Path, sync::Arc};
 
 pub use caption::KEYS;
 pub use display::NoDisplay;
-pub use hand::Hand;
+pub use hand::{Hand, Serving};
 pub use intent::Intent;
 pub use lamp::{LOWEST_DEG, LampPlace};
 
@@ -38,7 +40,8 @@ use crate::{
 pub struct ShowOptions {
     /// Id of the first scene; without it, the exhibit's first.
     pub scene: Option<String>,
-    pub tier: Tier,
+    /// Without it, the cheapest tier that is as exact as the exhibit asks.
+    pub tier: Option<Tier>,
     /// Width and height in mm of the display's visible area, for true size.
     pub display_mm: Option<[f64; 2]>,
     /// Width and height of the window in pixels.

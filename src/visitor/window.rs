@@ -29,6 +29,7 @@ use wgpu::DeviceType;
 use super::{
     NoDisplay, ShowOptions,
     caption::{self, Texts},
+    foresight::{Foresight, Observed, foresee},
     hand::{Hand, Picture, Retreat},
     input::Devices,
     intent::Intent,
@@ -56,8 +57,9 @@ const MM_PER_INCH: f64 = 25.4;
 const SETTLING_FRAMES: u32 = 4;
 /// Frames drawn after a change that needs nothing new on the GPU.
 const CHANGE_FRAMES: u32 = 1;
-/// Frames that take longer are too slow to follow a hand.
-const SLOW: Duration = Duration::from_millis(90);
+/// Frames are too slow that take longer than the exhibit asks by this factor: a display that is
+/// waited for may be a little slower than a round number of ms.
+const SLOW: f64 = 1.25;
 /// A hand that rests longer has come to rest.
 const PAUSE: Duration = Duration::from_millis(400);
 /// Between two looks at whether the first maps have arrived.
@@ -89,7 +91,11 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         measured: false,
     };
     let calm = std::env::var_os(REDUCED_MOTION).is_some_and(|set| !set.is_empty() && set != "0");
-    let hand = Hand::new(exhibit.clone(), scene, options.tier, picture, calm);
+    let tier = options.tier.unwrap_or_default();
+    let mut hand = Hand::new(exhibit.clone(), scene, tier, picture, calm);
+    if options.tier.is_none() {
+        hand.leave_tier_free();
+    }
     app.insert_resource(Waker(Arc::new(wake)))
         .insert_resource(WinitSettings::continuous())
         .insert_resource(DisplayMm(options.display_mm))
@@ -98,6 +104,7 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         .init_resource::<Devices>()
         .init_resource::<Texts>()
         .init_resource::<Pace>()
+        .init_resource::<Foresight>()
         .add_message::<Intent>()
         .add_plugins((
             StagePlugin {
@@ -114,7 +121,7 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
                 (take_in_reread, measure, read_devices, steer, follow_wishes)
                     .chain()
                     .in_set(StageSet::Steer),
-                (fall_back, caption::draw, rest)
+                (fall_back, foresee, caption::draw, rest)
                     .chain()
                     .after(StageSet::Arrange),
             ),
@@ -275,9 +282,11 @@ fn steer(
     mut intents: MessageReader<Intent>,
     mut hand: ResMut<Hand>,
     time: Res<Time<Real>>,
-    (arranged, mut pace): (Res<Arranged>, ResMut<Pace>),
+    (arranged, foresight, mut pace): (Res<Arranged>, Res<Foresight>, ResMut<Pace>),
     mut shown: ResMut<Shown>,
 ) {
+    let serving = foresight.serving(&shown.exhibit, hand.wanted(), pace.observed);
+    hand.bypass_change_detection().serve(serving);
     hand.advance(time.delta_secs_f64(), arranged.is_settled());
     let mut moving = hand.is_moving();
     for intent in intents.read() {
@@ -369,8 +378,10 @@ fn fall_back(
 struct Pace {
     /// Frames that follow without being asked for.
     left: u32,
-    /// Frames at the tier that was asked for come too slowly to follow a hand.
+    /// Frames at the tier at rest come too slowly to follow a hand.
     slow: bool,
+    /// How long a frame took last that followed another at once.
+    observed: Option<Observed>,
     /// When something last moved, since the start.
     moved: Duration,
     /// Something has been shown.
@@ -391,7 +402,12 @@ fn rest(
     let settled = arranged.is_settled();
     // Only a frame that follows another at once tells how long they take.
     if settled && pace.left > 0 && !hand.is_hurried() {
-        pace.slow = time.delta() > SLOW;
+        let ms = time.delta_secs_f64() * 1e3;
+        pace.slow = ms > SLOW * shown.exhibit.accuracy.frame_ms;
+        pace.observed = Some(Observed {
+            tier: shown.tier,
+            ms,
+        });
     }
     pace.begun |= settled;
     pace.left = pace.left.saturating_sub(1);

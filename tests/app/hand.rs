@@ -372,3 +372,50 @@ fn a_lowered_lamp_darkens_the_sheet() {
     hand.apply(Intent::Home);
     assert_eq!(lux(&hand), written);
 }
+
+#[test]
+fn a_cheap_tier_in_motion_and_the_exact_one_at_rest() {
+    use recto::visitor::Serving;
+    let (_folder, exhibit) = exhibit();
+    let hand = |tier| Hand::new(exhibit.clone(), 0, tier, PICTURE, false);
+    let serving = |at_rest, in_motion| Some(Serving { at_rest, in_motion });
+
+    // Nobody asked for a tier: what is served decides, once something is known.
+    let mut free = hand(Tier::Gallery);
+    free.leave_tier_free();
+    assert_eq!(free.wanted(), None);
+    assert_eq!(free.shown().tier, Tier::Gallery);
+    free.hurry(true);
+    assert_eq!(
+        free.shown().tier,
+        Tier::Draft,
+        "the cheapest while nothing is known"
+    );
+    free.hurry(false);
+    free.serve(serving(Tier::Study, Tier::Gallery));
+    assert_eq!(free.shown().tier, Tier::Study);
+    free.hurry(true);
+    assert_eq!(free.shown().tier, Tier::Gallery);
+    free.hurry(false);
+    assert_eq!(free.shown().tier, Tier::Study, "it refines");
+    // A wish ends that.
+    free.apply(Intent::StepTier(-1));
+    assert_eq!(free.wanted(), Some(Tier::Gallery));
+    free.hurry(true);
+    assert_eq!(
+        free.shown().tier,
+        Tier::Gallery,
+        "no dearer in motion than at rest"
+    );
+
+    let mut asked = hand(Tier::Study);
+    asked.serve(serving(Tier::Lambert, Tier::Draft));
+    assert_eq!(asked.shown().tier, Tier::Study, "what was asked for stays");
+    asked.hurry(true);
+    assert_eq!(asked.shown().tier, Tier::Draft);
+    // Baselines from the literature are never replaced.
+    let mut isle = hand(Tier::Isle);
+    isle.serve(serving(Tier::Study, Tier::Draft));
+    isle.hurry(true);
+    assert_eq!(isle.shown().tier, Tier::Isle);
+}

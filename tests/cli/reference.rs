@@ -11,10 +11,13 @@ fn reference(sheet: &Sheet, out: &Path, more: &[&str]) -> Command {
     command
         .arg("reference")
         .arg(sheet.exhibit())
-        .args(["--size", "16x12", "--samples", "4", "--out"])
+        .args(["--size", "16x12", "--out"])
         .arg(out)
         .args(more)
         .env("VK_DRIVER_FILES", "/nonexistent");
+    if !more.contains(&"--samples") {
+        command.args(["--samples", "4"]);
+    }
     command
 }
 
