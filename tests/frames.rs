@@ -3,6 +3,8 @@
 
 mod support;
 
+#[path = "support/crop.rs"]
+mod crop;
 #[path = "support/room.rs"]
 mod room;
 #[path = "support/show_through.rs"]
@@ -14,6 +16,8 @@ mod baselines;
 mod capture;
 #[path = "frames/colour.rs"]
 mod colour;
+#[path = "frames/crops.rs"]
+mod crops;
 #[path = "frames/lamps.rs"]
 mod lamps;
 #[path = "frames/layers.rs"]

@@ -1,15 +1,10 @@
 //! Every tier before the judge, in crops of the sample that the renderer draws on whatever Vulkan
-//! driver there is: fine pen work, wash, underdrawing and bare paper, under a lamp overhead, one
+//! driver there is: fine pen work, wash, underdrawing (lead point, stylus) and bare paper, under a lamp overhead, one
 //! at 10°, and against a light table.
 //!
-//! The walks stand in `fixtures/crops.csv` (`cargo test --release --test picture -- --ignored bake`
-//! writes them). What a tier misses there is the light alone: the photograph, the relief and the
+//! The walks stand in `fixtures/crops.csv` (`cargo test --release --test reference -- --ignored
+//! bake` writes them). What a tier misses there is the light alone: the photograph, the relief and the
 //! media are the same maps, read where linear filtering is exact.
-
-#[path = "support/crops.rs"]
-mod crops;
-#[path = "support/room.rs"]
-mod room;
 
 use std::sync::Arc;
 
@@ -21,7 +16,10 @@ use recto::{
     shot::Picture,
 };
 
-use crops::{CROPS, EDGE, LIGHTS, Truth, judged};
+use crate::{
+    crop::{self, CROPS, EDGE, LIGHTS, Truth, judged},
+    room,
+};
 
 /// Issue 3: `study` within ΔE00 .5 on average and 1.5 at the 99th percentile of the `local` walk.
 const STUDY_MEAN: f64 = 0.5;
@@ -78,6 +76,11 @@ fn differences(shown: &[[f64; 3]], truth: &Truth) -> Differences {
     }
 }
 
+fn fixture() -> Vec<Truth> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/crops.csv");
+    crop::read(&std::fs::read_to_string(path).expect("the fixture"))
+}
+
 fn at_judged(picture: &Picture) -> Vec<[f64; 3]> {
     let pixel = |[x, y]: [u32; 2]| room::pixel(picture, x, y);
     judged().into_iter().map(pixel).collect()
@@ -85,8 +88,8 @@ fn at_judged(picture: &Picture) -> Vec<[f64; 3]> {
 
 #[test]
 fn tiers_against_the_walk() {
-    let truths = crops::read(include_str!("fixtures/crops.csv"));
-    let folder = crops::folder();
+    let truths = fixture();
+    let folder = crop::folder();
     assert!(
         folder.join("maps/recto/albedo.png").exists(),
         "the sample's maps are not drawn: ./run sample exhibits"
@@ -97,7 +100,7 @@ fn tiers_against_the_walk() {
     for (light, lamp) in LIGHTS {
         for (crop, middle) in CROPS {
             let (exhibit, _) = Exhibit::read(&folder).unwrap_or_else(|faults| panic!("{faults}"));
-            let (exhibit, scene) = crops::scene(exhibit, middle, lamp);
+            let (exhibit, scene) = crop::scene(exhibit, middle, lamp);
             let exhibit = Arc::new(exhibit);
             for tier in Tier::ALL {
                 let picture = room::picture(&mut room, &exhibit, &scene, tier, [EDGE; 2]);
@@ -137,7 +140,7 @@ fn tiers_against_the_walk() {
 
 #[test]
 fn a_wrong_picture_is_told_from_a_right_one() {
-    let truths = crops::read(include_str!("fixtures/crops.csv"));
+    let truths = fixture();
     let truth = truths
         .iter()
         .find(|truth| truth.is("zenithal", "pen", Mode::Local))

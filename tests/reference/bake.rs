@@ -1,6 +1,6 @@
 //! Walks the crops that judge the tiers, and writes them down.
 
-use std::fs;
+use std::{fmt::Write as _, fs};
 
 use rayon::prelude::*;
 use recto::{
@@ -8,7 +8,7 @@ use recto::{
     reference::picture::{Crop, Exposure, Mode, Studio},
 };
 
-use crate::crops::{self, CROPS, EDGE, LIGHTS, Truth, judged};
+use crate::crop::{self, CROPS, EDGE, HEADER, LIGHTS, Truth, judged};
 
 /// Paths that undo the photograph at each roughness: its albedo within .2%, ΔE00 .05.
 const CAPTURE_PATHS: u64 = 1 << 18;
@@ -29,8 +29,8 @@ fn bake() {
     let mut studios: Vec<Studio> = LIGHTS
         .iter()
         .map(|(_, lamp)| {
-            let (exhibit, _) = Exhibit::read(&crops::folder()).unwrap_or_else(|f| panic!("{f}"));
-            let (exhibit, scene) = crops::scene(exhibit, CROPS[0].1, lamp);
+            let (exhibit, _) = Exhibit::read(&crop::folder()).unwrap_or_else(|f| panic!("{f}"));
+            let (exhibit, scene) = crop::scene(exhibit, CROPS[0].1, lamp);
             Studio::new(&exhibit, &scene, CAPTURE_PATHS, 1).unwrap_or_else(|e| panic!("{e}"))
         })
         .collect();
@@ -40,28 +40,23 @@ fn bake() {
     let mut sums: Vec<Truth> = Vec::new();
     if only.is_some() {
         let text = fs::read_to_string(path).expect("the fixture");
-        sums = crops::read(&text);
+        sums = crop::read(&text);
+        sums.retain(|truth| !is_wanted(&truth.crop));
     }
     for round in 0..rounds {
-        let mut at = 0;
         for ((light, lamp), studio) in LIGHTS.iter().zip(&mut studios) {
-            for (crop, middle) in CROPS {
-                let (exhibit, _) =
-                    Exhibit::read(&crops::folder()).unwrap_or_else(|f| panic!("{f}"));
-                let (_, scene) = crops::scene(exhibit, middle, lamp);
+            for (crop, middle) in CROPS.into_iter().filter(|(crop, _)| is_wanted(crop)) {
+                let (exhibit, _) = Exhibit::read(&crop::folder()).unwrap_or_else(|f| panic!("{f}"));
+                let (_, scene) = crop::scene(exhibit, middle, lamp);
                 studio.look(&scene.camera);
                 for mode in Mode::ALL {
-                    if !is_wanted(crop) {
-                        at += 1;
-                        continue;
-                    }
                     let samples = match mode {
                         Mode::Local => SAMPLES,
                         Mode::Lateral => SAMPLES / LATERAL_SHARE,
                     };
                     let pixels = walk(studio, samples, 100 + round, mode);
-                    match sums.get_mut(at) {
-                        // The first round takes the place of what was there.
+                    let before = sums.iter_mut().find(|truth| truth.is(light, crop, mode));
+                    match before {
                         Some(truth) => add(truth, &pixels, round as f64),
                         None => sums.push(Truth {
                             light: (*light).to_owned(),
@@ -70,11 +65,18 @@ fn bake() {
                             pixels,
                         }),
                     }
-                    at += 1;
                 }
             }
         }
-        fs::write(path, crops::write(&sums)).expect("the fixture is written");
+        // In one order, whatever was walked last.
+        let order = |truth: &Truth| {
+            let light = LIGHTS.iter().position(|(light, _)| *light == truth.light);
+            let crop = CROPS.iter().position(|(crop, _)| *crop == truth.crop);
+            let mode = Mode::ALL.iter().position(|mode| mode.name() == truth.mode);
+            (light, crop, mode)
+        };
+        sums.sort_by_key(order);
+        fs::write(path, text_of(&sums)).expect("the fixture is written");
         eprintln!("round {round}");
     }
 }
@@ -110,4 +112,24 @@ fn add(truth: &mut Truth, pixels: &[[[f64; 3]; 2]], before: f64) {
             sum[1][c] = (sum[1][c] * before * before + new[1][c]) / (all * all);
         }
     }
+}
+
+fn text_of(truths: &[Truth]) -> String {
+    let mut text = format!("{HEADER}\n");
+    for truth in truths {
+        for [mean, variance] in &truth.pixels {
+            let Truth {
+                light, crop, mode, ..
+            } = truth;
+            write!(text, "{light},{crop},{mode}").expect("a String");
+            for value in mean {
+                write!(text, ",{value:.5}").expect("a String");
+            }
+            for value in variance {
+                write!(text, ",{value:.1e}").expect("a String");
+            }
+            text.push('\n');
+        }
+    }
+    text
 }

@@ -1,7 +1,7 @@
 //! Crops of the sample `landscape` that judge the tiers: where they are, in what light, and what
 //! the walk found (`fixtures/crops.csv`, written by the test `bake`).
 
-use std::{fmt::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
 use recto::{
     manifest::{Exhibit, Scene, overrides::Overrides},
@@ -15,11 +15,13 @@ pub const EDGE: u32 = 32;
 /// Width of a crop on the sheet in texels of its maps, 3366 of which are 285 mm.
 const TEXELS: f64 = 16.0;
 
-/// What is seen, and the middle of the crop in mm.
-pub const CROPS: [(&str, [f64; 2]); 4] = [
+/// What is seen, and the middle of the crop in mm: underdrawing is lead point and a groove of the
+/// stylus.
+pub const CROPS: [(&str, [f64; 2]); 5] = [
     ("pen", [135.726_381, 77.989_524]),
     ("wash", [132.508_913, 111.183_763]),
-    ("underdrawing", [111.087_344, 27.436_054]),
+    ("lead", [205.918_004, 148.103_885]),
+    ("stylus", [111.087_344, 27.436_054]),
     ("paper", [229.540_998, 67.658_664]),
 ];
 
@@ -78,27 +80,8 @@ impl Truth {
     }
 }
 
-const HEADER: &str = "light,crop,mode,r,g,b,variance_r,variance_g,variance_b";
-
-pub fn write(truths: &[Truth]) -> String {
-    let mut text = format!("{HEADER}\n");
-    for truth in truths {
-        for [mean, variance] in &truth.pixels {
-            let Truth {
-                light, crop, mode, ..
-            } = truth;
-            write!(text, "{light},{crop},{mode}").expect("a String");
-            for value in mean {
-                write!(text, ",{value:.5}").expect("a String");
-            }
-            for value in variance {
-                write!(text, ",{value:.1e}").expect("a String");
-            }
-            text.push('\n');
-        }
-    }
-    text
-}
+/// The columns of the fixture.
+pub const HEADER: &str = "light,crop,mode,r,g,b,variance_r,variance_g,variance_b";
 
 pub fn read(text: &str) -> Vec<Truth> {
     let mut truths: Vec<Truth> = Vec::new();
