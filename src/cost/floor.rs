@@ -14,7 +14,8 @@ use bevy::{
         render_resource::{
             AsBindGroup, AsBindGroupError, BindGroupLayout, BindGroupLayoutEntry,
             BufferInitDescriptor, BufferUsages, Face, OwnedBindingResource,
-            RenderPipelineDescriptor, SpecializedMeshPipelineError, UnpreparedBindGroup,
+            RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError,
+            UnpreparedBindGroup,
         },
         renderer::RenderDevice,
     },
@@ -22,7 +23,7 @@ use bevy::{
 };
 
 use super::{CostError, stopwatch::sheet};
-use crate::sheet::PaperMaterial;
+use crate::sheet::{PaperMaterial, uniform::PaperUniform};
 
 const PATH: &str = "recto/floor.wgsl";
 const SHADER: &str = "embedded://recto/floor.wgsl";
@@ -86,7 +87,10 @@ impl AsBindGroup for Floor {
         values.extend(paper.lights[0].place.extend(0.0).to_array());
         values.extend(paper.albedo_place.row_u.extend(0.0).to_array());
         values.extend(paper.albedo_place.row_v.extend(0.0).to_array());
-        values.resize(1024, 0.0);
+        values.resize(
+            PaperUniform::min_size().get() as usize / size_of::<f32>(),
+            0.0,
+        );
         let contents: Vec<u8> = values
             .iter()
             .flat_map(|value| value.to_le_bytes())
