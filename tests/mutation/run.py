@@ -154,6 +154,10 @@ def generate(work):
     (crate / "src/sheet").mkdir(parents=True, exist_ok=True)
     for module in ("optics", "reference"):
         shutil.copytree(ROOT / "src" / module, crate / "src" / module, dirs_exist_ok=True)
+    # Whole pictures need an exhibit and its maps; no test here asks for them.
+    walk = (ROOT / "src/reference/mod.rs").read_text()
+    write(crate / "src/reference/mod.rs", re.sub(r"pub (mod|use) picture[^\n]*\n", "", walk))
+    shutil.rmtree(crate / "src/reference/picture", ignore_errors=True)
     for module in ("units", "colour"):
         shutil.copy(ROOT / f"src/{module}.rs", crate / f"src/{module}.rs")
     # What of the narrowing needs no manifest and no maps.
