@@ -33,11 +33,11 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SHADERS = ["shaders/paper_bsdf.wgsl", "shaders/paper_baselines.wgsl"]
+SHADERS = [f"shaders/paper_{name}.wgsl" for name in ("bsdf", "baselines", "media")]
 # Not medium.rs and medium/catalogue.rs, which are data. Arrays of numbers are left out below.
 SOURCES = [f"src/optics/{name}.rs" for name in (
-    "baselines bsdf fresnel ink lamp lamp_units microfacet photometry quadrature relief slab "
-    "refraction late spectrum study table tier").split()]
+    "baselines bsdf fresnel ink lamp lamp_units lobes matter microfacet photometry quadrature relief slab "
+    "refraction late shade spectrum study table tier").split()]
 # Mutants that a test only notices by never ending are caught too.
 LONGEST_S = 600
 # A minute long, and what it sees the others see earlier.
@@ -162,7 +162,8 @@ def generate(work):
         shutil.copy(ROOT / f"src/{module}.rs", crate / f"src/{module}.rs")
     # What of the narrowing needs no manifest and no maps.
     uniform = (ROOT / "src/sheet/uniform.rs").read_text().split("/// Twin of `Paper`.")[0]
-    uniform = re.sub(r"    manifest::[^\n]*\n|    maps::[^\n]*\n", "", uniform)
+    uniform = re.sub(r" {4}(?:manifest|maps)::[^\n]*\n|mod media;\n|pub use media::[^\n]*\n", "",
+                     uniform)
     write(crate / "src/sheet/uniform.rs", uniform)
     shaders = ROOT / "shaders"
     write(crate / "src/lib.rs", f'''
@@ -176,6 +177,7 @@ pub mod sheet {{
     pub mod uniform;
     pub const PAPER_BSDF: &str = include_str!("{shaders}/paper_bsdf.wgsl");
     pub const PAPER_BASELINES: &str = include_str!("{shaders}/paper_baselines.wgsl");
+    pub const PAPER_MEDIA: &str = include_str!("{shaders}/paper_media.wgsl");
 }}
 ''')
     write(crate / "bevy/src/lib.rs",

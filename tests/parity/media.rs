@@ -17,7 +17,7 @@ use recto::{
 use super::*;
 
 fn physics() -> String {
-    format!("{PAPER_BSDF}\n{PAPER_MEDIA}")
+    format!("{}\n{}", bsdf(), gpu::media())
 }
 
 /// Writes colours and numbers, in this order.
@@ -445,40 +445,30 @@ fn rounding_of_sheen(x: &[f64]) -> f64 {
     2.0 * UNIT_PRODUCT * (0.3 + x[1])
 }
 
-#[test]
-fn spots_are_divided_alike() {
-    let gpu = Gpu::new();
+/// Spots divided among media, particles and body colour, and the lobes that are off by default.
+pub fn judge_media(gpu: &Gpu) {
+    let physics = physics();
     divided()
-        .compare_rounded(&gpu, &physics(), rounding_of_albedos)
+        .compare_rounded(gpu, &physics, rounding_of_albedos)
         .unwrap();
     gloss()
-        .compare_rounded(&gpu, &physics(), |_| 4.0 * UNIT_PRODUCT)
+        .compare_rounded(gpu, &physics, |_| 4.0 * UNIT_PRODUCT)
         .unwrap();
-}
-
-#[test]
-fn particles_and_body_colour() {
-    let gpu = Gpu::new();
-    particles().compare(&gpu, &physics()).unwrap();
+    particles().compare(gpu, &physics).unwrap();
     surfaces()
-        .compare_rounded(&gpu, &physics(), |_| 4.0 * UNIT_PRODUCT)
+        .compare_rounded(gpu, &physics, |_| 4.0 * UNIT_PRODUCT)
         .unwrap();
-}
-
-#[test]
-fn lobes_that_are_off_by_default() {
-    let gpu = Gpu::new();
     combed()
-        .compare_rounded(&gpu, &physics(), rounding_of_directions)
+        .compare_rounded(gpu, &physics, rounding_of_directions)
         .unwrap();
     sheen()
-        .compare_rounded(&gpu, &physics(), rounding_of_sheen)
+        .compare_rounded(gpu, &physics, rounding_of_sheen)
         .unwrap();
 }
 
 #[test]
 fn broken_media_are_found() {
-    let gpu = Gpu::new();
+    let gpu = Gpu::sampling(BROKEN);
     type Rounding = fn(&[f64]) -> f64;
     let tests: [(Twins, Rounding, &str, &str); 10] = [
         (

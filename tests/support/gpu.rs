@@ -8,7 +8,7 @@ use std::{
 
 use recto::{
     device::NoDevice,
-    sheet::{PAPER_BASELINES, PAPER_BSDF},
+    sheet::{PAPER_BASELINES, PAPER_BSDF, PAPER_MEDIA},
 };
 
 /// Where the mutation run (tests/mutation/run.py) lays a file of this name in place of a shader.
@@ -34,6 +34,12 @@ fn judged(name: &str, shipped: &'static str) -> Cow<'static, str> {
 /// The text of paper_bsdf.wgsl.
 pub fn bsdf() -> &'static str {
     static TEXT: LazyLock<Cow<str>> = LazyLock::new(|| judged("paper_bsdf.wgsl", PAPER_BSDF));
+    &TEXT
+}
+
+/// The text of paper_media.wgsl.
+pub fn media() -> &'static str {
+    static TEXT: LazyLock<Cow<str>> = LazyLock::new(|| judged("paper_media.wgsl", PAPER_MEDIA));
     &TEXT
 }
 
