@@ -162,7 +162,6 @@ impl Floor {
     /// [`CostError`] where there is not exactly one sheet.
     pub fn lay(world: &mut World) -> Result<(), CostError> {
         let (entity, mesh, material) = sheet(world)?;
-        // An entity whose material is exchanged for one of another kind is not drawn any more.
         world.despawn(entity);
         let floor = world.resource_mut::<Assets<Self>>().add(Self(material));
         world.spawn((mesh, MeshMaterial3d(floor), NoFrustumCulling));

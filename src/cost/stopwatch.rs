@@ -67,7 +67,7 @@ impl Stopwatch {
     /// # Errors
     /// As [`Stopwatch::time`], and where more than one side of the sheet is in sight.
     pub fn time_floor(&self, shown: Shown) -> Result<Vec<f64>, CostError> {
-        // A room of its own: in one where the floor has been, no sheet is drawn afterwards.
+        // A room of its own, whose stage need not know what became of its sheet.
         let mut room = room()?;
         room.arrange(shown, self.size)?;
         Floor::lay(room.world())?;
