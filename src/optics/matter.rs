@@ -234,7 +234,8 @@ pub fn mean_of(mean: &InterfaceMean, reflects: f64) -> InterfaceMean {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Media {
     pub particles: Vec<Particle>,
-    /// Mean photographed albedo of the particles at full coverage.
+    /// The brightest photographed albedo of its sorts of particles at full coverage. Where all
+    /// sorts count as one, a darker one's coverage is borne out all the same.
     pub grains: DVec3,
     /// Of the side's body colours, their mean: albedo of full coverage, diffuse part.
     pub body_albedo: DVec3,
@@ -318,7 +319,9 @@ impl Media {
         let through = mean_colour(of_bodies.iter().map(|body| body.through));
         let particles: Vec<Particle> = media.particles.iter().map(Particle::new).collect();
         Self {
-            grains: mean_colour(particles.iter().map(|each| each.albedo)),
+            grains: particles
+                .iter()
+                .fold(DVec3::ZERO, |most, each| most.max(each.albedo)),
             particles,
             body_albedo: mean_colour(of_bodies.iter().map(|body| body.albedo)),
             body_through: through,

@@ -456,6 +456,8 @@ fn a_clear_film_on_paper_is_no_ink() {
     assert!((near.film_gain - 1.0).abs().max_element() < 1e-12);
     assert!(near.film_reflects == 1.0 && near.body_through == DVec3::ZERO);
     assert!(side.media.particles.len() == 5);
+    // Red chalk is the reddest, silver point the greenest and bluest of them.
+    assert_eq!(side.media.grains, DVec3::new(0.36, 0.22, 0.20));
 }
 
 #[test]
