@@ -307,7 +307,7 @@ impl LateralWalker {
                 }
                 w = layers.phase.sample(w, rng);
                 collisions += 1;
-                if collisions % 16 == 0 {
+                if collisions.is_multiple_of(16) {
                     let most = kept.most();
                     if most < FAINT {
                         let survival = (most / FAINT).max(0.05);

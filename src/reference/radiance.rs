@@ -84,13 +84,12 @@ impl<const C: usize> Eye<'_, C> {
         } else {
             self.absorbers.behind
         };
-        for channel in 0..C {
+        let channels = lamp.irradiance.iter().zip(absorption);
+        for (radiance, (irradiance, absorption)) in self.radiance.iter_mut().zip(channels) {
             // A lamp of one colour, or of one of many pictures that share their walks.
-            if lamp.irradiance[channel] == 0.0 {
-                continue;
+            if *irradiance != 0.0 {
+                *radiance += irradiance * factor * absorption.kept(lengths);
             }
-            let kept = absorption[channel].kept(lengths);
-            self.radiance[channel] += lamp.irradiance[channel] * factor * kept;
         }
     }
 }

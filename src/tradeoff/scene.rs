@@ -1,7 +1,11 @@
 //! What each tier would show of a scene, without rendering it: the sheet that is seen is sampled at
 //! a few hundred places, and each tier's f64 twin is compared with what the judge would find there.
 
-use std::{collections::HashMap, path::PathBuf, sync::Arc};
+use std::{
+    collections::{HashMap, hash_map::Entry},
+    path::PathBuf,
+    sync::Arc,
+};
 
 use glam::{DVec2, DVec3};
 
@@ -57,13 +61,12 @@ pub struct Maps(HashMap<String, Pyramid>);
 
 impl Maps {
     fn load(&mut self, map: &MapUse) -> Result<(), MapFault> {
-        let key = key(map);
-        if !self.0.contains_key(&key) {
+        if let Entry::Vacant(place) = self.0.entry(key(map)) {
             let pyramid = map.load().map_err(|error| MapFault {
                 path: map.file().path.clone(),
                 error,
             })?;
-            self.0.insert(key, pyramid);
+            place.insert(pyramid);
         }
         Ok(())
     }

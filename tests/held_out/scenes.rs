@@ -108,7 +108,7 @@ fn draw(i: usize) -> Draw {
         _ => "kind = \"light-table\"\nnits = 1000\n".to_owned(),
     };
     // Most eyes look straight down, as a museum's do.
-    let tilt = if i % 3 == 0 {
+    let tilt = if i.is_multiple_of(3) {
         between(rng, 10.0, 60.0)
     } else {
         0.0

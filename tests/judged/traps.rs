@@ -69,7 +69,8 @@ fn traps_2_and_4_quotients_are_guarded_before_they_are_taken() {
         sin2_h: 1.0,
         ..g
     };
-    assert!((0.0f64 / 0.0).is_nan() && v_groove(&groove).is_finite());
+    let nothing = std::hint::black_box(0.0f64);
+    assert!((nothing / nothing).is_nan() && v_groove(&groove).is_finite());
     // No interface, met in its plane; and air as a conductor.
     assert_eq!(fresnel_dielectric(0.0, 1.0), 1.0);
     assert!(fresnel_conductor(0.0, 1.0, 0.0).is_finite());

@@ -1,17 +1,14 @@
 //! Media on the paper, and the lobes of paper that are off by default.
 
-use recto::{
-    optics::{
-        lobes::{
-            albedo_under_sheen, alpha_towards, brdf_gloss, brdf_sheen, combed_capture, gloss_lobe,
-            gloss_lobe_anisotropic, sheen_albedo, turned, under_sheen,
-        },
-        matter::{
-            Cover, Particle, Shares, borne_out, brdf_body, interface_of, mean_of, particle_capture,
-            particle_gloss, particle_lobe, passing, shares_of, uncovered_share, veiled, with_borne,
-        },
+use recto::optics::{
+    lobes::{
+        albedo_under_sheen, alpha_towards, brdf_gloss, brdf_sheen, combed_capture, gloss_lobe,
+        gloss_lobe_anisotropic, sheen_albedo, turned, under_sheen,
     },
-    sheet::PAPER_MEDIA,
+    matter::{
+        Cover, Particle, Shares, borne_out, brdf_body, interface_of, mean_of, particle_capture,
+        particle_gloss, particle_lobe, passing, shares_of, uncovered_share, veiled, with_borne,
+    },
 };
 
 use super::*;

@@ -274,6 +274,8 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
     let through = ThroughUniform::new(&study.through);
     let wide = |v: Vec3| colour(v.as_dvec3());
     let narrow = |x: f32| literal(f64::from(x));
+    let of_direction = split.of_direction.to_array().map(narrow).join(", ");
+    let of_direction = format!("vec4({of_direction})");
     let text = format!(
         "let film = Film(array({}), array({}), {});
         let split = Split({}, {}, {}, {}, {}, {}, {}, {}, {}, {});
@@ -287,10 +289,7 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
         narrow(split.depth),
         wide(split.leaning),
         narrow(split.inner_mean),
-        format!(
-            "vec4({})",
-            split.of_direction.to_array().map(narrow).join(", ")
-        ),
+        of_direction,
         narrow(split.forward_share),
         narrow(split.g_forward),
         narrow(split.g_backward),

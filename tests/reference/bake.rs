@@ -19,7 +19,7 @@ const LATERAL_SHARE: u64 = 4;
 
 /// `RECTO_ROUNDS` rounds, each with a seed of its own; the fixture is written after each, so that
 /// the test may be stopped at any time. `RECTO_CROP` names the one crop to walk, and the others stay
-/// as they are.
+/// as they are; `RECTO_LIGHT` likewise.
 #[test]
 #[ignore = "writes the fixture: an hour of random walks"]
 fn bake() {
@@ -36,16 +36,21 @@ fn bake() {
         .collect();
     eprintln!("prepared");
     let only = std::env::var("RECTO_CROP").ok();
-    let is_wanted = |crop: &str| only.as_deref().is_none_or(|only| only == crop);
+    let only_light = std::env::var("RECTO_LIGHT").ok();
+    let is_wanted = |light: &str, crop: &str| {
+        only.as_deref().is_none_or(|only| only == crop)
+            && only_light.as_deref().is_none_or(|only| only == light)
+    };
     let mut sums: Vec<Truth> = Vec::new();
-    if only.is_some() {
+    if only.is_some() || only_light.is_some() {
         let text = fs::read_to_string(path).expect("the fixture");
         sums = crop::read(&text);
-        sums.retain(|truth| !is_wanted(&truth.crop));
+        sums.retain(|truth| !is_wanted(&truth.light, &truth.crop));
     }
     for round in 0..rounds {
         for ((light, lamp), studio) in LIGHTS.iter().zip(&mut studios) {
-            for (crop, middle) in CROPS.into_iter().filter(|(crop, _)| is_wanted(crop)) {
+            let wanted = CROPS.into_iter().filter(|(crop, _)| is_wanted(light, crop));
+            for (crop, middle) in wanted {
                 let (exhibit, _) = Exhibit::read(&crop::folder()).unwrap_or_else(|f| panic!("{f}"));
                 let (_, scene) = crop::scene(exhibit, middle, lamp);
                 studio.look(&scene.camera);

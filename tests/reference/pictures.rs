@@ -197,14 +197,14 @@ fn a_photograph_is_given_back_whatever_lies_on_the_paper() {
             },
             || (),
         );
-        for c in 0..3 {
+        let others = quarters[(i + 1) % 4];
+        for (c, (quarter, other)) in quarters[i].into_iter().zip(others).enumerate() {
             let found = pixel.mean[0][c];
-            let off = found / quarters[i][c] - 1.0;
+            let off = found / quarter - 1.0;
             let noise = Z_MAX * pixel.variance[0][c].sqrt() / found;
             eprintln!("quarter {i} channel {c}: {off:+.4} ± {noise:.4}");
             assert!(off.abs() < GIVEN_BACK + noise, "{i} {c}: {off}");
             // Another quarter's photograph is another one.
-            let other = quarters[(i + 1) % 4][c];
             assert!((found / other - 1.0).abs() > GIVEN_BACK, "{i} {c}");
         }
     }

@@ -44,6 +44,9 @@ struct Behind {
     media: Option<Media>,
 }
 
+/// A transmission map, and the thickness it stands for.
+type Uneven = (Field, Thinner);
+
 /// Optical depth of a grain: nothing passes.
 const OPAQUE: f64 = 1e3;
 
@@ -62,7 +65,7 @@ pub(super) struct Sheet {
     /// The slab of a body colour, and what it absorbs.
     body: Option<(Layers, Tones)>,
     behind: Option<Behind>,
-    thinner: Option<(Field, Thinner)>,
+    thinner: Option<Uneven>,
 }
 
 /// What one path finds at a spot.
@@ -428,7 +431,7 @@ fn through(
     bare: [f64; 3],
     paths: u64,
     seed: u64,
-) -> Result<(Option<Behind>, Option<(Field, Thinner)>), PictureError> {
+) -> Result<(Option<Behind>, Option<Uneven>), PictureError> {
     let is_behind = |&lamp: &usize| {
         exhibit.lamps[lamp]
             .kind

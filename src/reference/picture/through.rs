@@ -83,7 +83,7 @@ mod tests {
             phase: Phase::ISOTROPIC,
             thickness_mm: 0.1,
         };
-        let thinner = Thinner::new(&layers, 0.3, 0.4, 8_000, 1);
+        let thinner = Thinner::new(&layers, 0.3, 0.4, 60_000, 1);
         let transmitted = |clear: f64| {
             let layers = Layers {
                 thickness_mm: layers.thickness_mm * thinner.thickness(clear),
@@ -93,7 +93,7 @@ mod tests {
                 sigma_a: 0.3,
                 ..Absorption::NONE
             };
-            reflectance_transmittance(&layers, &[grey], 1.0, 40_000, 2)[0]
+            reflectance_transmittance(&layers, &[grey], 1.0, 100_000, 2)[0]
                 .transmitted
                 .mean
         };
