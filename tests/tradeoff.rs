@@ -40,7 +40,7 @@ fn the_judge_has_walked_every_subject_with_little_noise() {
         let noise = errors::noise(subject).mean;
         assert!(noise > 0.0 && noise < NOISE, "{}: {noise}", subject.name);
         // The photograph of bare paper is what the catalogue says it is.
-        if subject.slab().thickness == subject.on_whole_sheet().slab().thickness {
+        if subject.slab() == subject.on_whole_sheet().slab() {
             for (found, wanted) in judged.bare.mean.to_array().iter().zip(subject.bare()) {
                 assert!((found - wanted).abs() < 0.01, "{}: {found}", subject.name);
             }

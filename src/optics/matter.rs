@@ -413,7 +413,7 @@ impl BodyLight {
 /// A layer of pigment of scattering optical thickness `tau` and absorption σa/σs `loss`, by
 /// Kubelka & Munk 1931 with S = ¾σs and K = 2σa, isotropic. The paper's diffusion needs several
 /// scatterings; paint is as thin as one. Against the random walk in diffuse light, without a
-/// surface: T .870/.714/.571/.400/.182/.118 at τ = .2/.5/1/2/6/10 where the walk gives
+/// surface: T .870/.727/.571/.400/.182/.118 at τ = .2/.5/1/2/6/10 where the walk gives
 /// .853/.707/.556/.390/.178/.115 (diffusion: .548/.623/.759/.500/.212/.134).
 pub fn layer_of_pigment(tau: f64, loss: f64) -> Body {
     let s = 0.75 * tau;
