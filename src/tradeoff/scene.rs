@@ -312,26 +312,8 @@ impl Sampled {
     fn study(&self, without: Option<Aspect>) -> Vec<DVec3> {
         let places = self.places.iter();
         places
-            .map(|place| match without {
-                Some(Aspect::Coupling) => self.uncoupled(place),
-                without => self.shown(place, Tier::Study, without),
-            })
+            .map(|place| self.shown(place, Tier::Study, without))
             .collect()
-    }
-
-    /// Draft's light on a sheet whose lamps keep their area, against gallery's: the coupling alone,
-    /// laid upon study.
-    fn uncoupled(&self, place: &Place) -> DVec3 {
-        let lit = |tier| {
-            let light = Illumination {
-                beams: self.beams(place, Tier::Gallery, None),
-                ambient: self.lighting.ambient,
-                table: self.lighting.light_table,
-            };
-            place.spot.radiance(tier, place.v, &light)
-        };
-        let coupled = lit(Tier::Gallery).max(DVec3::splat(1e-6));
-        self.shown(place, Tier::Study, None) * lit(Tier::Draft) / coupled
     }
 
     fn errors(&self, shown: &[DVec3], truth: &[DVec3]) -> Errors {
@@ -424,11 +406,18 @@ impl Spot {
     fn without(&self, aspect: Aspect) -> Option<Self> {
         let mut spot = self.clone();
         match aspect {
-            Aspect::Shadows | Aspect::Areas | Aspect::Coupling => return None,
+            Aspect::Shadows | Aspect::Areas => return None,
             Aspect::SingleScatter => {
                 spot.specimen.study.split.kappa = DVec3::ZERO;
                 // What enters at a slant goes on being sent back sooner.
                 spot.specimen.study.split.at_capture = DVec3::ONE;
+            }
+            Aspect::Coupling => {
+                // What the surface lets in and out is then what it does in the photograph.
+                let interface = &mut spot.specimen.interface;
+                let captured = interface.mean_at(spot.specimen.surface.alpha).capture;
+                interface.t = Default::default();
+                interface.t[0][0] = 1.0 / captured.sqrt();
             }
             Aspect::Particles => {
                 spot.specimen.cover.particles = 0.0;
