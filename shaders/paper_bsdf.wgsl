@@ -95,7 +95,7 @@ fn v_hammon(mu_i: f32, mu_o: f32, alpha: f32) -> f32 {
 
 struct Interface {
     t: f32,
-    lost: f32,
+    late: f32,
 }
 
 struct InterfaceMean {
@@ -107,60 +107,24 @@ struct InterfaceMean {
 
 const ALPHA_FIT_MIN: f32 = 0.1;
 
-// Coefficients over the powers of √μ, each over the powers of √α.
-struct InterfaceTable {
-    t: array<vec4<f32>, 7>,
-    lost: array<vec4<f32>, 7>,
-    compensation: vec4<f32>,
-    t_mean: vec4<f32>,
-    capture: vec4<f32>,
-    floor: vec4<f32>,
-}
-
-// The table at one roughness: what interface_at needs for every direction of a pixel.
+// Coefficients over powers of √μ.
 struct InterfaceRow {
     t: array<f32, 7>,
-    lost: array<f32, 7>,
+    late: array<f32, 7>,
 }
 
-// Powers of √α.
-fn fit_powers(alpha: f32) -> vec4<f32> {
-    let s = sqrt(clamp(alpha, ALPHA_FIT_MIN, 1.0));
-    return vec4(1.0, s, s * s, s * s * s);
-}
-
-// `p` are the powers of √α, or (1, 0, 0, 0) for a table at one roughness.
-fn interface_row(table: InterfaceTable, p: vec4<f32>) -> InterfaceRow {
-    return InterfaceRow(
-        array<f32, 7>(
-            dot(table.t[0], p), dot(table.t[1], p), dot(table.t[2], p), dot(table.t[3], p),
-            dot(table.t[4], p), dot(table.t[5], p), dot(table.t[6], p),
-        ),
-        array<f32, 7>(
-            dot(table.lost[0], p), dot(table.lost[1], p), dot(table.lost[2], p),
-            dot(table.lost[3], p), dot(table.lost[4], p), dot(table.lost[5], p),
-            dot(table.lost[6], p),
-        ),
-    );
+fn fit_root(alpha: f32) -> f32 {
+    return sqrt(clamp(alpha, ALPHA_FIT_MIN, 1.0));
 }
 
 fn interface_at(row: InterfaceRow, mu: f32) -> Interface {
     let x = sqrt(clamp(mu, 0.0, 1.0));
     let c = row.t;
     let t = (((((c[6] * x + c[5]) * x + c[4]) * x + c[3]) * x + c[2]) * x + c[1]) * x + c[0];
-    let d = row.lost;
-    let lost =
+    let d = row.late;
+    let late =
         (((((d[6] * x + d[5]) * x + d[4]) * x + d[3]) * x + d[2]) * x + d[1]) * x + d[0];
-    return Interface(clamp(t, 0.0, 1.0), clamp(lost, 0.0, 1.0));
-}
-
-fn interface_mean_at(table: InterfaceTable, p: vec4<f32>) -> InterfaceMean {
-    return InterfaceMean(
-        max(dot(table.compensation, p), 0.0),
-        dot(table.t_mean, p),
-        dot(table.capture, p),
-        max(dot(table.floor, p), 0.0),
-    );
+    return Interface(clamp(t, 0.0, 1.0), clamp(late, 0.0, 1.0));
 }
 
 // Twins of src/optics/tier.rs
@@ -238,29 +202,23 @@ fn brdf_gallery_specular(
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_dielectric(g.cos_d, s.eta);
-    return s.specular * lobe + mean.compensation * at_i.lost * at_o.lost;
+    return s.specular * lobe + mean.compensation * at_i.late * at_o.late;
 }
 
-// Twins of src/optics/refraction.rs. The table of paths is read by the glue: an array that a
-// function is given would be copied.
+// Twins of src/optics/refraction.rs
 
-const PATH_MU: f32 = 12.0;
-const PATH_ALPHA: f32 = 8.0;
-const ALPHA_FIT_ROOT: f32 = 0.31622776601684;
+const COSINE_MIN: f32 = 1e-3;
 
-fn path_mu(mu: f32) -> f32 {
-    return sqrt(clamp(mu, 0.0, 1.0)) * (PATH_MU - 1.0);
+// `row` holds coefficients over powers of √μ, each over powers of w.
+fn path_at(row: array<vec4<f32>, 7>, mu: f32, n: f32) -> vec4<f32> {
+    let x = sqrt(clamp(mu, 0.0, 1.0));
+    let sum = (((((row[6] * x + row[5]) * x + row[4]) * x + row[3]) * x + row[2]) * x + row[1]) * x
+        + row[0];
+    return sum / smooth_cosine(mu, n);
 }
 
-fn path_alpha(alpha: f32) -> f32 {
-    let s = sqrt(clamp(alpha, ALPHA_FIT_MIN, 1.0)) - ALPHA_FIT_ROOT;
-    return s * ((PATH_ALPHA - 1.0) / (1.0 - ALPHA_FIT_ROOT));
-}
-
-fn path_between(
-    a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>, x: f32, s: f32,
-) -> vec4<f32> {
-    return mix(mix(a, b, x), mix(c, d, x), s);
+fn smooth_cosine(mu: f32, n: f32) -> f32 {
+    return max(inner_cosine(clamp(mu, 0.0, 1.0), n), COSINE_MIN);
 }
 
 fn crossed(path: vec4<f32>, tau: vec3<f32>) -> vec3<f32> {

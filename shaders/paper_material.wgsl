@@ -4,13 +4,13 @@
 
 #import "embedded://recto/paper_bsdf.wgsl"::{
     ALPHA_MIN, INV_PI, MU_MIN,
-    Facing, Film, Incidence, Interface, InterfaceMean, InterfaceTable, Light, Seen, Split, Surface,
-    Through, Ways,
+    Facing, Film, Incidence, Interface, InterfaceMean, InterfaceRow, Light, Seen, Split,
+    Surface, Through, Ways,
     albedo_of, beyond_capture, brdf_draft, brdf_gallery, brdf_lambert, brdf_study,
-    brdf_study_diffuse, btdf_study, capture_floor, facing, fit_powers, fresnel_dielectric,
-    ies_angles, interface_at, interface_mean_at, interface_row, internal_reflectance, light_disc,
+    brdf_study_diffuse, btdf_study, capture_floor, facing, fit_root, fresnel_dielectric,
+    ies_angles, interface_at, internal_reflectance, light_disc,
     light_distant, light_ies, light_punctual, light_rectangle, mean_inner_cosine, mean_length,
-    optical_depth, path_alpha, path_between, path_mu, through_study, widened,
+    optical_depth, path_at, through_study, widened,
 }
 #import "embedded://recto/paper_media.wgsl"::{
     CAPTURE_COS_D, SHEEN_MEAN,
@@ -66,10 +66,14 @@ struct MapPlace {
 }
 
 // What lies on both sides, and the lobes of paper that are off by default.
+#ifdef PARTICLES
+// Sorts of particles: a constant, so that what is done for each is written out.
+const SORTS: u32 = #{SORTS}u;
+#endif
+
 struct Media {
     particles: array<Particle, 6>,
     body_albedo: vec3<f32>,
-    particle_count: u32,
     body_through: vec3<f32>,
     film_eta: f32,
     film_gain: vec3<f32>,
@@ -121,7 +125,6 @@ struct Paper {
     light_table: vec3<f32>,
     // Scale and offset of the stored z of a normal map (xy).
     normal_out: vec4<f32>,
-    interface_table: InterfaceTable,
     lights: array<Light, 8>,
     overlays: array<MapPlace, 16>,
     // Of the rules of 1 to 7 points: nodes and weights (xy), and the azimuths of the first quarter
@@ -129,8 +132,6 @@ struct Paper {
     quadrature: array<vec4<f32>, 28>,
     // What the side is made of: the study tier, and light through the sheet.
     film: Film,
-    // 12 nodes over √μ for each of 8 over √α.
-    paths: array<array<vec4<f32>, 12>, 8>,
     split: Split,
     through: Through,
     // Diffuse part of the bare paper's albedo on the side that is seen, and on the other.
@@ -147,6 +148,9 @@ struct Paper {
     height_range: vec2<f32>,
     // Size of a texel of the height map in mm.
     height_texel: f32,
+    // From √α to a row of `rows`.
+    row_scale: f32,
+    row_offset: f32,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paper: Paper;
@@ -174,6 +178,9 @@ struct Paper {
 #ifdef OTHER_MATTER
 // Shares of film, body colour, and particles of all sorts on the other side.
 @group(#{MATERIAL_BIND_GROUP}) @binding(12) var other_matter_map: texture_2d<f32>;
+#endif
+#ifdef COUPLED
+@group(#{MATERIAL_BIND_GROUP}) @binding(13) var rows: texture_2d<f32>;
 #endif
 #ifdef OVERLAYS
 @group(#{MATERIAL_BIND_GROUP}) @binding(16) var overlay_map_a: texture_2d<f32>;
@@ -315,16 +322,45 @@ fn light_small(light: Light, p: vec3<f32>) -> Incidence {
     return light_punctual(light, p);
 }
 
+#ifdef COUPLED
+// Rows over √α, narrowed by src/sheet/rows.rs. Each holds what is the same for all directions, T
+// and E₂ over powers of √μ with the index of the paths, P_c, and P over powers of √μ.
+fn row_of(alpha: f32) -> i32 {
+    return i32(fit_root(alpha) * paper.row_scale + paper.row_offset);
+}
+
+fn interface_mean(y: i32) -> InterfaceMean {
+    let m = textureLoad(rows, vec2(0, y), 0);
+    return InterfaceMean(m.x, m.y, m.z, m.w);
+}
+
+fn interface_row(y: i32) -> InterfaceRow {
+    let a = textureLoad(rows, vec2(1, y), 0);
+    let b = textureLoad(rows, vec2(2, y), 0);
+    let c = textureLoad(rows, vec2(3, y), 0);
+    let d = textureLoad(rows, vec2(4, y), 0);
+    return InterfaceRow(
+        array<f32, 7>(a.x, a.y, a.z, a.w, b.x, b.y, b.z),
+        array<f32, 7>(c.x, c.y, c.z, c.w, d.x, d.y, d.z),
+    );
+}
+#endif
+
 #ifdef PATHS
-// The path through a film at the cosine `mu`; `s` is path_alpha.
-fn path_at(mu: f32, s: f32) -> vec4<f32> {
-    let x = path_mu(mu);
-    let i = min(u32(x), 10u);
-    let j = min(u32(s), 6u);
-    return path_between(
-        paper.paths[j][i], paper.paths[j][i + 1u],
-        paper.paths[j + 1u][i], paper.paths[j + 1u][i + 1u],
-        x - f32(i), s - f32(j),
+fn path_index(y: i32) -> f32 {
+    return textureLoad(rows, vec2(2, y), 0).w;
+}
+
+fn capture_path(y: i32) -> vec4<f32> {
+    return textureLoad(rows, vec2(5, y), 0);
+}
+
+fn path_row(y: i32) -> array<vec4<f32>, 7> {
+    return array<vec4<f32>, 7>(
+        textureLoad(rows, vec2(6, y), 0), textureLoad(rows, vec2(7, y), 0),
+        textureLoad(rows, vec2(8, y), 0), textureLoad(rows, vec2(9, y), 0),
+        textureLoad(rows, vec2(10, y), 0), textureLoad(rows, vec2(11, y), 0),
+        textureLoad(rows, vec2(12, y), 0),
     );
 }
 #endif
@@ -506,7 +542,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef MATTER
     var cover = Cover(0.0, matter.y, 0.0, vec3(0.0));
 #ifdef PARTICLES
-    for (var k = 0u; k < paper.media.particle_count; k++) {
+    for (var k = 0u; k < SORTS; k++) {
         cover.particles += coverages[k];
         cover.grains += coverages[k] * paper.media.particles[k].albedo;
     }
@@ -538,15 +574,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
     let s = Surface(albedo, alpha, eta, paper.f_normal, paper.specular, f_capture);
 #ifdef COUPLED
-    var powers = vec4(1.0, 0.0, 0.0, 0.0);
-#ifdef ROUGHNESS_MAP
-    powers = fit_powers(alpha);
-#endif
-#ifdef NORMAL_MAP
-    powers = fit_powers(alpha);
-#endif
 #ifdef ANISOTROPIC
-    powers = fit_powers(alpha_towards(alpha, paper.media.stretch, vec3(0.0, 0.0, 1.0)));
+    let y = row_of(alpha_towards(alpha, paper.media.stretch, vec3(0.0, 0.0, 1.0)));
     var grain_way = vec3(paper.media.along, 0.0);
 #ifdef CURVED
     grain_way = tangent * paper.media.along.x + cross(geometric, tangent) * paper.media.along.y;
@@ -555,13 +584,15 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let along = normalize(grain_way - n * dot(n, grain_way));
     let frame = transpose(mat3x3(along, cross(n, along), n));
     let framed_v = frame * v;
+#else
+    let y = row_of(alpha);
 #endif
-    let row = interface_row(paper.interface_table, powers);
-    var mean = interface_mean_at(paper.interface_table, powers);
+    let row = interface_row(y);
+    var mean = interface_mean(y);
     var at_o = interface_at(row, max(dot(n, v), MU_MIN));
 #ifdef ANISOTROPIC
-    let powers_o = fit_powers(alpha_towards(alpha, paper.media.stretch, framed_v));
-    at_o = interface_at(interface_row(paper.interface_table, powers_o), max(dot(n, v), MU_MIN));
+    let y_o = row_of(alpha_towards(alpha, paper.media.stretch, framed_v));
+    at_o = interface_at(interface_row(y_o), max(dot(n, v), MU_MIN));
 #endif
 #ifdef MEDIA_INDEX
     mean = mean_of(mean, reflects);
@@ -586,9 +617,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
 #endif
 #ifdef PATHS
-    let path_s = path_alpha(alpha);
-    let capture = path_at(0.70710678118655, path_s) + path_at(1.0, path_s);
-    let path_o = path_at(dot(n, v), path_s);
+    let paths = path_row(y);
+    let path_n = path_index(y);
+    let capture = capture_path(y);
+    let path_o = path_at(paths, dot(n, v), path_n);
 #endif
 #ifdef TIER_STUDY
     let darkness = optical_depth(paper.film, capture, share_f);
@@ -604,7 +636,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     var gloss = array<f32, 6>();
     var grain_alphas = array<f32, 6>();
     var grains = vec3(0.0);
-    for (var k = 0u; k < paper.media.particle_count; k++) {
+    for (var k = 0u; k < SORTS; k++) {
         let covered = coverages[k] * borne;
         if covered > 0.0 {
             let particle = paper.media.particles[k];
@@ -759,8 +791,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
                 var at_i = interface_at(row, mu_i);
 #ifdef ANISOTROPIC
                 let framed_l = frame * incidence.l;
-                let powers_i = fit_powers(alpha_towards(alpha, paper.media.stretch, framed_l));
-                at_i = interface_at(interface_row(paper.interface_table, powers_i), mu_i);
+                let y_i = row_of(alpha_towards(alpha, paper.media.stretch, framed_l));
+                at_i = interface_at(interface_row(y_i), mu_i);
 #endif
 #ifdef MEDIA_INDEX
                 at_i = interface_of(at_i, reflects);
@@ -775,7 +807,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
 #ifdef TIER_STUDY
                 let g = facing(n, incidence.l, v);
-                let ways = Ways(capture, path_at(mu_i, path_s), path_o);
+                let ways = Ways(capture, path_at(paths, mu_i, path_n), path_o);
 #ifdef GLOSS
                 var f = brdf_study_diffuse(
                     s, g, at_i, at_o, mean, paper.split, depth, ways, paper_albedo,
@@ -805,7 +837,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
 #ifdef PARTICLES
                 f += lit_grains;
-                for (var k = 0u; k < paper.media.particle_count; k++) {
+                for (var k = 0u; k < SORTS; k++) {
                     if gloss[k] > 0.0 {
                         f += gloss[k] * particle_lobe(paper.media.particles[k], grain_alphas[k], g);
                     }
@@ -854,7 +886,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
             if behind > 0.0 {
                 let f = btdf_study(
                     paper.through, seen, interface_at(row, behind), at_o, mean,
-                    path_at(behind, path_s), path_o, s.eta,
+                    path_at(paths, behind, path_n), path_o, s.eta,
                 );
                 radiance += f * baked * incidence.e * behind;
             }
@@ -876,7 +908,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef PARTICLES
     // Metal and pigment reflect even light about as at 45°/0°.
     diffuse += grains;
-    for (var k = 0u; k < paper.media.particle_count; k++) {
+    for (var k = 0u; k < SORTS; k++) {
         diffuse += gloss[k] * paper.media.particles[k].f_capture;
     }
 #endif

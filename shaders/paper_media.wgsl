@@ -124,7 +124,7 @@ fn veiled(cover: Cover, body_through: vec3<f32>, depth: vec3<f32>) -> vec3<f32> 
 }
 
 fn interface_of(at: Interface, reflects: f32) -> Interface {
-    return Interface(clamp(1.0 - reflects * (1.0 - at.t), 0.0, 1.0), at.lost);
+    return Interface(clamp(1.0 - reflects * (1.0 - at.t), 0.0, 1.0), at.late);
 }
 
 fn mean_of(mean: InterfaceMean, reflects: f32) -> InterfaceMean {
@@ -199,7 +199,7 @@ fn brdf_gloss(
     mean: InterfaceMean,
 ) -> f32 {
     let lobe = straight + (back - straight) * retro;
-    return s.specular * lobe + mean.compensation * at_i.lost * at_o.lost;
+    return s.specular * lobe + mean.compensation * at_i.late * at_o.late;
 }
 
 fn sheen_albedo(mu: f32) -> f32 {

@@ -13,12 +13,13 @@ use crate::{
     device::{self, NoDevice},
     optics::{
         bsdf::{Pair, Sample, Specimen},
-        refraction::PATH_MU,
+        refraction::PATH_TERMS,
         tier::Tier,
     },
     sheet::{
         PAPER_BASELINES, PAPER_BSDF, PAPER_MEDIA,
-        uniform::{FilmUniform, InterfaceUniform, ParticleUniform, SplitUniform, ThroughUniform},
+        rows::{MeanUniform, RowUniform, narrow_paths},
+        uniform::{FilmUniform, ParticleUniform, SplitUniform, ThroughUniform},
     },
 };
 
@@ -46,10 +47,10 @@ fn call(tier: Tier) -> &'static str {
     match tier {
         Tier::Draft => "brdf_draft(s, g)",
         Tier::Gallery => {
-            "brdf_gallery(s, g, interface_at(row, g.mu_i), interface_at(row, g.mu_o), mean)"
+            "brdf_gallery(s, g, interface_at(specimen.row, g.mu_i), interface_at(specimen.row, g.mu_o), specimen.mean)"
         }
         Tier::Study => {
-            "study(s, g, interface_at(row, g.mu_i), interface_at(row, g.mu_o), mean, v.z)"
+            "study(s, g, interface_at(specimen.row, g.mu_i), interface_at(specimen.row, g.mu_o), specimen.mean, v.z)"
         }
         Tier::Isle => "brdf_isle(s, g)",
         Tier::Lambert => "brdf_lambert(s)",
@@ -72,19 +73,16 @@ fn text(tier: Tier) -> String {
         "{PAPER_BSDF}\n{PAPER_BASELINES}\n{PAPER_MEDIA}
         struct Specimen {{
             albedo: vec3<f32>, alpha: f32, eta: f32, f_normal: f32, specular: f32, f_capture: f32,
-            capture: vec4<f32>, paths: array<vec4<f32>, 12>,
-            table: InterfaceTable, film: Film, split: Split, through: Through,
+            capture: vec4<f32>, paths: array<vec4<f32>, 7>, path_n: f32,
+            mean: InterfaceMean, row: InterfaceRow, film: Film, split: Split, through: Through,
             bare: vec3<f32>, body_albedo: vec3<f32>, body_through: vec3<f32>,
             cover: Cover, particle: Particle,
         }}
         @group(0) @binding(0) var<storage, read> specimen: Specimen;
         @group(0) @binding(1) var<storage, read> given: array<f32>;
         @group(0) @binding(2) var<storage, read_write> found: array<f32>;
-        // At one roughness.
-        fn path_at(mu: f32) -> vec4<f32> {{
-            let x = path_mu(mu);
-            let i = min(u32(x), 10u);
-            return mix(specimen.paths[i], specimen.paths[i + 1u], x - f32(i));
+        fn path_towards(mu: f32) -> vec4<f32> {{
+            return path_at(specimen.paths, mu, specimen.path_n);
         }}
         fn study(
             s: Surface, g: Facing, at_i: Interface, at_o: Interface, mean: InterfaceMean, v_z: f32,
@@ -99,10 +97,9 @@ fn text(tier: Tier) -> String {
                     vec3(0.0), 1.0, depth, internal_reflectance(specimen.film, vec3(1.0)),
                     internal_reflectance(specimen.film, share),
                 );
-                let row = interface_row(specimen.table, vec4(1.0, 0.0, 0.0, 0.0));
                 return btdf_study(
-                    specimen.through, seen, at_i, interface_at(row, mu_o), mean,
-                    path_at(g.mu_i), path_at(mu_o), s.eta,
+                    specimen.through, seen, at_i, interface_at(specimen.row, mu_o), mean,
+                    path_towards(g.mu_i), path_towards(mu_o), s.eta,
                 ) * passing(cover, specimen.body_through);
             }}
             let particle = specimen.particle;
@@ -113,7 +110,7 @@ fn text(tier: Tier) -> String {
                 + particle_lobe(particle, particle.alpha, g) * mirrors;
             return brdf_study(
                 s, g, at_i, at_o, mean, specimen.split, depth,
-                Ways(specimen.capture, path_at(g.mu_i), path_at(g.mu_o)), shares.paper,
+                Ways(specimen.capture, path_towards(g.mu_i), path_towards(g.mu_o)), shares.paper,
                 shares.surface,
             ) + brdf_body(shares.body, at_i, at_o, mean) + grains * cover.particles;
         }}
@@ -131,9 +128,6 @@ fn text(tier: Tier) -> String {
             let n = vec3(0.0, 0.0, 1.0);
             let g = facing(n, l, v);
             let off = off_mirror(n, l, v);
-            let powers = vec4(1.0, 0.0, 0.0, 0.0);
-            let row = interface_row(specimen.table, powers);
-            let mean = interface_mean_at(specimen.table, powers);
             let f = {call};
             found[to] = f.x; found[to + 1u] = f.y; found[to + 2u] = f.z;
         }}"
@@ -150,8 +144,10 @@ struct SpecimenUniform {
     specular: f32,
     f_capture: f32,
     capture: Vec4,
-    paths: [Vec4; PATH_MU],
-    table: InterfaceUniform,
+    paths: [Vec4; PATH_TERMS],
+    path_n: f32,
+    mean: MeanUniform,
+    row: RowUniform,
     film: FilmUniform,
     split: SplitUniform,
     through: ThroughUniform,
@@ -182,8 +178,10 @@ fn constants(specimen: &Specimen) -> Result<Vec<u8>, ComputeError> {
         specular: s.specular as f32,
         f_capture: s.f_capture as f32,
         capture: specimen.capture().as_vec4(),
-        paths: std::array::from_fn(|i| specimen.study.film.paths.nodes[i].as_vec4()),
-        table: InterfaceUniform::new(&specimen.interface),
+        paths: narrow_paths(&specimen.study.film.paths.row(s.alpha)),
+        path_n: specimen.study.film.paths.n as f32,
+        mean: MeanUniform::new(&specimen.interface.mean_at(s.alpha)),
+        row: RowUniform::new(&specimen.interface.row(s.alpha)),
         film: FilmUniform::new(&specimen.study.film),
         split: SplitUniform::new(&specimen.study.split),
         through: ThroughUniform::new(&specimen.study.through),

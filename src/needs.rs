@@ -39,8 +39,8 @@ pub struct Terms {
     /// How many textures tell the side's media apart: 0, 1, or 2 for more than two sorts of
     /// particles.
     pub matter: u32,
-    /// Metal or chalk lies on the side.
-    pub particles: bool,
+    /// Sorts of metal and chalk that lie on the side, up to the most that a shader tells apart.
+    pub sorts: u32,
     /// Body colour lies on the side.
     pub body: bool,
     /// Ink or body colour has a surface of another refractive index than the paper's.

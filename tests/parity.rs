@@ -20,15 +20,12 @@ use recto::{
         photometry::Photometry,
         quadrature::{GRIDS, disc_rule, gauss_legendre},
         table::{
-            ALPHA_FIT_MIN, AlphaPolynomial, Interface, InterfaceMean, InterfaceTable, LOST_TERMS,
-            MU_TERMS,
+            Interface, InterfaceMean, InterfaceRow, InterfaceTable, MU_TERMS, fit_root,
+            interface_at,
         },
         tier::{Facing, Surface, brdf_draft, brdf_gallery, brdf_lambert, capture_floor, facing},
     },
-    sheet::{
-        PAPER_BSDF,
-        uniform::{InterfaceUniform, LightUniform},
-    },
+    sheet::{PAPER_BSDF, rows::RowUniform, uniform::LightUniform},
 };
 
 #[path = "parity/baselines.rs"]
@@ -361,7 +358,7 @@ fn brdf_inputs(x: &[f64]) -> BrdfInputs {
         cos_d: x[9],
         sin2_h: x[10],
     };
-    let interface = |t: f64, lost: f64| Interface { t, lost };
+    let interface = |t: f64, late: f64| Interface { t, late };
     let mean = InterfaceMean {
         compensation: x[15],
         t_mean: x[16],

@@ -19,14 +19,15 @@ use recto::{
         matter::SHARE_LEAST,
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
-        refraction::{PATH_ALPHA, PATH_MU},
-        table::{ALPHA_FIT_MIN, LOST_TERMS, MU_TERMS},
+        refraction::COSINE_MIN,
+        table::{ALPHA_FIT_MIN, LATE_TERMS, MU_TERMS},
     },
     sheet::{
         PAPER_BASELINES, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA,
+        rows::{MeanUniform, RowUniform},
         uniform::{
-            FilmUniform, InterfaceUniform, LightUniform, MapPlace, MediaUniform, PaperUniform,
-            ParticleUniform, SplitUniform, ThroughUniform,
+            FilmUniform, LightUniform, MapPlace, MediaUniform, PaperUniform, ParticleUniform,
+            SplitUniform, ThroughUniform,
         },
     },
 };
@@ -191,13 +192,9 @@ const CPU_ONLY: [&str; 7] = [
     "ways_back",
 ];
 /// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
-/// pixel: these stand for methods, `Light::at`, `InterfaceTable::at` and `mean_at`.
-const GPU_ONLY: [&str; 11] = [
+/// pixel: these stand for a method, `Light::at`.
+const GPU_ONLY: [&str; 7] = [
     "angle_of",
-    "fit_powers",
-    "interface_at",
-    "interface_mean_at",
-    "interface_row",
     "ies_angles",
     "light_disc",
     "light_distant",
@@ -206,7 +203,7 @@ const GPU_ONLY: [&str; 11] = [
     "light_rectangle",
 ];
 /// Layouts of the shader's own. Where a uniform fills one, its offsets are compared.
-const GPU_LAYOUTS: [&str; 5] = ["Film", "InterfaceRow", "InterfaceTable", "Light", "Split"];
+const GPU_LAYOUTS: [&str; 3] = ["Film", "Light", "Split"];
 
 #[test]
 fn twins_have_the_same_names_and_order() {
@@ -256,15 +253,7 @@ fn constants_of_the_shaders_are_those_of_the_sources() {
     assert_eq!(constant(PAPER_BSDF, "ALPHA_MIN"), ALPHA_MIN);
     assert_eq!(constant(PAPER_BSDF, "MU_MIN"), MU_MIN);
     assert_eq!(constant(PAPER_BSDF, "ALPHA_FIT_MIN"), ALPHA_FIT_MIN);
-    let root = constant(PAPER_BSDF, "ALPHA_FIT_ROOT") as f32;
-    assert_eq!(root, ALPHA_FIT_MIN.sqrt() as f32);
-    assert_eq!(constant(PAPER_BSDF, "PATH_MU"), PATH_MU as f64);
-    assert_eq!(constant(PAPER_BSDF, "PATH_ALPHA"), PATH_ALPHA as f64);
-    // The glue's own numbers for the same nodes.
-    let nodes = format!("paths: array<array<vec4<f32>, {PATH_MU}>, {PATH_ALPHA}>");
-    assert!(PAPER_MATERIAL.contains(&nodes));
-    assert!(PAPER_MATERIAL.contains(&format!("min(u32(x), {}u)", PATH_MU - 2)));
-    assert!(PAPER_MATERIAL.contains(&format!("min(u32(s), {}u)", PATH_ALPHA - 2)));
+    assert_eq!(constant(PAPER_BSDF, "COSINE_MIN"), COSINE_MIN);
     assert_eq!(constant(PAPER_BASELINES, "BASE_MIN"), BASE_MIN);
     assert_eq!(constant(PAPER_MEDIA, "SHARE_LEAST"), SHARE_LEAST);
     assert_eq!(constant(PAPER_MEDIA, "SHEEN_MEAN"), SHEEN_MEAN);
@@ -357,7 +346,6 @@ impl Sentinel {
         filled!(MediaUniform {
             particles: std::array::from_fn::<_, MAX_PARTICLES, _>(|_| self.particle().0),
             body_albedo: self.vec3(),
-            particle_count: self.u32(),
             body_through: self.vec3(),
             film_eta: self.f32(),
             film_gain: self.vec3(),
@@ -374,14 +362,19 @@ impl Sentinel {
         })
     }
 
-    fn interface(&mut self) -> (InterfaceUniform, Fields) {
-        filled!(InterfaceUniform {
-            t: std::array::from_fn::<_, MU_TERMS, _>(|_| self.vec4()),
-            lost: std::array::from_fn::<_, LOST_TERMS, _>(|_| self.vec4()),
-            compensation: self.vec4(),
-            t_mean: self.vec4(),
-            capture: self.vec4(),
-            floor: self.vec4(),
+    fn interface_row(&mut self) -> (RowUniform, Fields) {
+        filled!(RowUniform {
+            t: std::array::from_fn::<_, MU_TERMS, _>(|_| self.f32()),
+            late: std::array::from_fn::<_, LATE_TERMS, _>(|_| self.f32()),
+        })
+    }
+
+    fn interface_mean(&mut self) -> (MeanUniform, Fields) {
+        filled!(MeanUniform {
+            compensation: self.f32(),
+            t_mean: self.f32(),
+            capture: self.f32(),
+            floor: self.f32(),
         })
     }
 
@@ -447,14 +440,10 @@ impl Sentinel {
             level: self.vec4(),
             light_table: self.vec3(),
             normal_out: self.vec4(),
-            interface_table: self.interface().0,
             lights: std::array::from_fn::<_, MAX_LAMPS, _>(|_| self.light().0),
             overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),
             quadrature: std::array::from_fn::<_, { GAUSS_LEGENDRE.len() }, _>(|_| self.vec4()),
             film: self.film().0,
-            paths: std::array::from_fn::<_, PATH_ALPHA, _>(|_| {
-                std::array::from_fn::<_, PATH_MU, _>(|_| self.vec4())
-            }),
             split: self.split().0,
             through: self.through().0,
             lit_bare: self.vec3(),
@@ -467,6 +456,8 @@ impl Sentinel {
             height_place: self.map_place().0,
             height_range: self.vec2(),
             height_texel: self.f32(),
+            row_scale: self.f32(),
+            row_offset: self.f32(),
         })
     }
 }
@@ -519,7 +510,8 @@ fn uniforms_lie_in_memory_as_the_shader_reads_them() {
     }
     let mut sentinel = Sentinel(0);
     let light = whole(sentinel.light());
-    let table = whole(sentinel.interface());
+    let row = whole(sentinel.interface_row());
+    let mean = whole(sentinel.interface_mean());
     let place = whole(sentinel.map_place());
     let particle = whole(sentinel.particle());
     let media = whole(sentinel.media());
@@ -535,9 +527,9 @@ fn uniforms_lie_in_memory_as_the_shader_reads_them() {
         misread(&physics, "Split", &split),
         misread(&physics, "Through", &through),
         misread(&physics, "Light", &light),
-        misread(&physics, "InterfaceTable", &table),
+        misread(&physics, "InterfaceRow", &row),
+        misread(&physics, "InterfaceMean", &mean),
         misread(&glue, "Light", &light),
-        misread(&glue, "InterfaceTable", &table),
         misread(&glue, "MapPlace", &place),
         misread(&glue, "Particle", &particle),
         misread(&glue, "Media", &media),

@@ -15,6 +15,7 @@ use naga::{
 };
 
 use crate::{
+    maps::MAX_PARTICLES,
     needs::Terms,
     sheet::{PAPER_BASELINES_MODULE, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA_MODULE, material},
 };
@@ -71,16 +72,17 @@ impl Composer {
         Self(cache)
     }
 
-    /// The module with these names defined.
+    /// The module with these names defined, with the most sorts of particles.
     ///
     /// # Errors
     /// What the composer says, with the names.
     pub fn compose(&mut self, defined: &[&str]) -> Result<Arc<naga::Module>, String> {
         let group = ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), MATERIAL_BIND_GROUP);
+        let sorts = ShaderDefVal::UInt(material::SORTS.into(), MAX_PARTICLES as u32);
         let definitions: Vec<ShaderDefVal> = defined
             .iter()
             .map(|&name| name.into())
-            .chain([group])
+            .chain([group, sorts])
             .collect();
         self.0
             .get(0, GLUE, &definitions)

@@ -7,7 +7,7 @@ use glam::DAffine2;
 use super::{MapUse, Terms};
 use crate::{
     manifest::exhibit::{Exhibit, MapFile, MediaContent, MediaMap, Paper, Side},
-    maps::{MatterSlot, MediaChannels, MediaLayer},
+    maps::{MAX_PARTICLES, MatterSlot, MediaChannels, MediaLayer},
     optics::{matter::SideMedia, medium::Matter, tier::Tier},
 };
 
@@ -116,7 +116,7 @@ pub(super) fn matter(
     let media = side_media(exhibit, media);
     if !media.particles.is_empty() {
         say("a lobe for each sort of metal and chalk".into());
-        terms.particles = true;
+        terms.sorts = sorts.len().min(MAX_PARTICLES) as u32;
     }
     terms.body = !media.bodies.is_empty();
     if media.index_differs(paper.index) {

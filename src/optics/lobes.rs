@@ -109,7 +109,7 @@ pub fn brdf_gloss(
     mean: &InterfaceMean,
 ) -> f64 {
     let lobe = straight + (back - straight) * retro;
-    s.specular * lobe + mean.compensation * at_i.lost * at_o.lost
+    s.specular * lobe + mean.compensation * at_i.late * at_o.late
 }
 
 /// Directional albedo of the sheen of strength 1, within 4e-5.

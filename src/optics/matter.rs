@@ -212,7 +212,7 @@ pub fn veiled(cover: &Cover, body_through: DVec3, depth: DVec3) -> DVec3 {
 pub fn interface_of(at: &Interface, reflects: f64) -> Interface {
     Interface {
         t: (1.0 - reflects * (1.0 - at.t)).clamp(0.0, 1.0),
-        lost: at.lost,
+        late: at.late,
     }
 }
 

@@ -80,6 +80,19 @@ pub fn chebyshev<const N: usize>() -> [f64; N] {
     std::array::from_fn(|i| 0.5 - 0.5 * (PI * (i as f64 + 0.5) / N as f64).cos())
 }
 
+/// Values at `M` Chebyshev nodes of the polynomial of degree `M` − 1 nearest, by least squares, to
+/// `values` at `N` ≥ `M` Chebyshev nodes: at these nodes the Chebyshev polynomials are orthogonal
+/// (Mason & Handscomb 2003, §4.6), so that the series only has to be cut off.
+pub fn chebyshev_fit<const N: usize, const M: usize>(values: &[f64; N]) -> [f64; M] {
+    let term =
+        |k: usize, i: usize, nodes: usize| (k as f64 * PI * (i as f64 + 0.5) / nodes as f64).cos();
+    let series: [f64; M] = std::array::from_fn(|k| {
+        let sum: f64 = (0..N).map(|i| values[i] * term(k, i, N)).sum();
+        sum * if k == 0 { 1.0 } else { 2.0 } / N as f64
+    });
+    std::array::from_fn(|j| (0..M).map(|k| series[k] * term(k, j, M)).sum())
+}
+
 /// Coefficients of the polynomial through (`nodes`, `values`): Newton's divided differences,
 /// then expanded (Björck & Pereyra 1970).
 pub fn through<const N: usize>(nodes: &[f64; N], values: &[f64; N]) -> [f64; N] {

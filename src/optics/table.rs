@@ -25,7 +25,7 @@ use super::{
 /// Coefficients over powers of x = √μ.
 pub const MU_TERMS: usize = 7;
 /// The same for what comes late, which is a hundredth of the light.
-pub const LOST_TERMS: usize = 7;
+pub const LATE_TERMS: usize = 7;
 /// Coefficients over powers of s = √α.
 pub const ALPHA_TERMS: usize = 4;
 /// Below this roughness a fit over all roughnesses reads this one: nearer to a mirror the
@@ -46,11 +46,18 @@ pub struct InterfaceTable {
     /// Coefficients of [`Interface::t`], from x⁰ upwards.
     pub t: [AlphaPolynomial; MU_TERMS],
     /// Coefficients of [`Interface::lost`], from x⁰ upwards.
-    pub lost: [AlphaPolynomial; LOST_TERMS],
+    pub late: [AlphaPolynomial; LATE_TERMS],
     pub compensation: AlphaPolynomial,
     pub t_mean: AlphaPolynomial,
     pub capture: AlphaPolynomial,
     pub floor: AlphaPolynomial,
+}
+
+/// The interface at one roughness: coefficients over powers of x.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InterfaceRow {
+    pub t: [f64; MU_TERMS],
+    pub late: [f64; LATE_TERMS],
 }
 
 /// The interface at one cosine and roughness.
@@ -59,7 +66,7 @@ pub struct Interface {
     /// Directional transmittance 1 − E(μ), all bounces counted, in [0, 1].
     pub t: f64,
     /// E₂(μ): what several bounces send back, in [0, 1].
-    pub lost: f64,
+    pub late: f64,
 }
 
 /// The interface at one roughness.
@@ -91,7 +98,7 @@ impl InterfaceTable {
         };
         Self {
             t: std::array::from_fn(|i| over_s(&|row| row.t[i])),
-            lost: std::array::from_fn(|i| over_s(&|row| row.lost[i])),
+            late: std::array::from_fn(|i| over_s(&|row| row.late[i])),
             compensation: over_s(&|row| row.mean.compensation),
             t_mean: over_s(&|row| row.mean.t_mean),
             capture: over_s(&|row| row.mean.capture),
@@ -105,7 +112,7 @@ impl InterfaceTable {
         let constant = |value: f64| [value, 0.0, 0.0, 0.0];
         Self {
             t: row.t.map(constant),
-            lost: row.lost.map(constant),
+            late: row.late.map(constant),
             compensation: constant(row.mean.compensation),
             t_mean: constant(row.mean.t_mean),
             capture: constant(row.mean.capture),
@@ -115,24 +122,21 @@ impl InterfaceTable {
 
     /// At cosine `mu` in [0, 1] and roughness `alpha` in [0, 1].
     pub fn at(&self, mu: f64, alpha: f64) -> Interface {
-        let x = mu.clamp(0.0, 1.0).sqrt();
-        let s = fit_s(alpha);
-        let value = |coefficients: &[AlphaPolynomial]| {
-            let over_x: Vec<f64> = coefficients
-                .iter()
-                .map(|over_s| polynomial(over_s, s))
-                .collect();
-            polynomial(&over_x, x).clamp(0.0, 1.0)
-        };
-        Interface {
-            t: value(&self.t),
-            lost: value(&self.lost),
+        interface_at(&self.row(alpha), mu)
+    }
+
+    /// For every direction, at roughness `alpha` in [0, 1].
+    pub fn row(&self, alpha: f64) -> InterfaceRow {
+        let s = fit_root(alpha);
+        InterfaceRow {
+            t: self.t.map(|over_s| polynomial(&over_s, s)),
+            late: self.late.map(|over_s| polynomial(&over_s, s)),
         }
     }
 
     /// At roughness `alpha` in [0, 1].
     pub fn mean_at(&self, alpha: f64) -> InterfaceMean {
-        let s = fit_s(alpha);
+        let s = fit_root(alpha);
         InterfaceMean {
             compensation: polynomial(&self.compensation, s).max(0.0),
             t_mean: polynomial(&self.t_mean, s),
@@ -142,14 +146,24 @@ impl InterfaceTable {
     }
 }
 
-fn fit_s(alpha: f64) -> f64 {
+/// The interface at cosine `mu` in [0, 1].
+pub fn interface_at(row: &InterfaceRow, mu: f64) -> Interface {
+    let x = mu.clamp(0.0, 1.0).sqrt();
+    Interface {
+        t: polynomial(&row.t, x).clamp(0.0, 1.0),
+        late: polynomial(&row.late, x).clamp(0.0, 1.0),
+    }
+}
+
+/// s = √α, of a roughness `alpha` within the bounds of what is fitted.
+pub fn fit_root(alpha: f64) -> f64 {
     alpha.clamp(ALPHA_FIT_MIN, 1.0).sqrt()
 }
 
 /// One roughness.
 struct Row {
     t: [f64; MU_TERMS],
-    lost: [f64; LOST_TERMS],
+    late: [f64; LATE_TERMS],
     mean: InterfaceMean,
 }
 
@@ -179,11 +193,7 @@ impl Row {
             capture,
             floor: PI * compensation * late_at(OBLIQUE) * late_at(1.0),
         };
-        Self {
-            t,
-            lost: late,
-            mean,
-        }
+        Self { t, late, mean }
     }
 }
 
@@ -203,7 +213,7 @@ mod tests {
     /// The fit's largest error over all directions, see the module's head.
     const FIT: f64 = 4e-3;
     /// Of late light, in units of what arrives.
-    const LOST_FIT: f64 = 4e-3;
+    const LATE_FIT: f64 = 4e-3;
 
     #[test]
     fn follows_bounces_between_its_nodes() {
@@ -220,8 +230,8 @@ mod tests {
                         "α {alpha} μ {mu}: {} {exact}",
                         at.t
                     );
-                    let off = (at.lost - late).abs();
-                    assert!(off < LOST_FIT, "α {alpha} μ {mu}: {} {late}", at.lost);
+                    let off = (at.late - late).abs();
+                    assert!(off < LATE_FIT, "α {alpha} μ {mu}: {} {late}", at.late);
                 }
             }
         }
@@ -236,7 +246,7 @@ mod tests {
             let over_hemisphere: f64 = (0..steps)
                 .map(|i| {
                     let mu = (f64::from(i) + 0.5) / f64::from(steps);
-                    2.0 * PI * mu / f64::from(steps) * table.at(mu, alpha).lost
+                    2.0 * PI * mu / f64::from(steps) * table.at(mu, alpha).late
                 })
                 .sum();
             let whole = mean.compensation * over_hemisphere;
@@ -274,7 +284,7 @@ mod tests {
                 for alpha in [-1.0, 0.0, 1e-4, 0.5, 1.0, 9.0] {
                     let at = table.at(mu, alpha);
                     assert!((0.0..=1.0).contains(&at.t), "{n} {mu} {alpha}: {at:?}");
-                    assert!((0.0..=1.0).contains(&at.lost));
+                    assert!((0.0..=1.0).contains(&at.late));
                     let mean = table.mean_at(alpha);
                     assert!(mean.compensation.is_finite() && mean.compensation >= 0.0);
                     assert!(mean.capture.is_finite() && mean.capture > 0.99);

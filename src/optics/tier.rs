@@ -226,7 +226,7 @@ pub fn brdf_gallery_specular(
     let lobe = d_ggx(g.sin2_h, s.alpha)
         * v_smith(g.mu_i, g.mu_o, s.alpha)
         * fresnel_dielectric(g.cos_d, s.eta);
-    s.specular * lobe + mean.compensation * at_i.lost * at_o.lost
+    s.specular * lobe + mean.compensation * at_i.late * at_o.late
 }
 
 #[cfg(test)]

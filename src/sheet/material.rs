@@ -25,10 +25,14 @@ use bevy::{
 use super::uniform::PaperUniform;
 use crate::{manifest::exhibit::MAX_OVERLAYS, needs::Terms, optics::tier::Tier};
 
+/// The name of the number of sorts of particles in the shader.
+pub const SORTS: &str = "SORTS";
 /// Binding of the profiles of IES lamps.
 const PROFILE_BINDING: u32 = 11;
 /// Binding of the media of the other side.
 const OTHER_MATTER_BINDING: u32 = 12;
+/// Binding of the rows over roughness.
+const ROW_BINDING: u32 = 13;
 /// Binding of the first overlay.
 const OVERLAY_BINDING: u32 = 16;
 
@@ -53,6 +57,8 @@ pub struct PaperMaps {
     pub other_matter: Option<Handle<Image>>,
     /// Of IES lamps, see [`super::upload::profile_image`].
     pub profiles: Option<Handle<Image>>,
+    /// What the interface does at each roughness, see [`super::rows`].
+    pub rows: Option<Handle<Image>>,
 }
 
 /// One side of a sheet.
@@ -151,19 +157,22 @@ impl AsBindGroup for PaperMaterial {
                 OwnedBindingResource::TextureView(TextureViewDimension::D2, view),
             ));
         }
-        let profiles = match &self.maps.profiles {
-            None => &fallback.d2,
-            Some(handle) => images
-                .get(handle)
-                .ok_or(AsBindGroupError::RetryNextUpdate)?,
-        };
-        bindings.push((
-            PROFILE_BINDING,
-            OwnedBindingResource::TextureView(
-                TextureViewDimension::D2,
-                profiles.texture_view.clone(),
-            ),
-        ));
+        for (binding, handle) in [
+            (PROFILE_BINDING, &self.maps.profiles),
+            (ROW_BINDING, &self.maps.rows),
+        ] {
+            let image = match handle {
+                None => &fallback.d2,
+                Some(handle) => images
+                    .get(handle)
+                    .ok_or(AsBindGroupError::RetryNextUpdate)?,
+            };
+            let view = image.texture_view.clone();
+            bindings.push((
+                binding,
+                OwnedBindingResource::TextureView(TextureViewDimension::D2, view),
+            ));
+        }
         let filtering = SamplerBindingType::Filtering;
         bindings.push((
             1,
@@ -182,8 +191,9 @@ impl AsBindGroup for PaperMaterial {
             sampler(SamplerBindingType::Filtering).build(1, ShaderStages::FRAGMENT),
         ];
         // Read texel by texel: 32-bit floats are not filtered everywhere.
-        let profiles = texture_2d(TextureSampleType::Float { filterable: false });
-        entries.push(profiles.build(PROFILE_BINDING, ShaderStages::FRAGMENT));
+        let table = texture_2d(TextureSampleType::Float { filterable: false });
+        entries
+            .extend([PROFILE_BINDING, ROW_BINDING].map(|i| table.build(i, ShaderStages::FRAGMENT)));
         let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
         entries.extend(
             (2..=10)
@@ -226,6 +236,7 @@ impl Material for PaperMaterial {
         let defs: Vec<ShaderDefVal> = definitions(&terms, albedo_map, display)
             .into_iter()
             .map(Into::into)
+            .chain([ShaderDefVal::UInt(SORTS.into(), terms.sorts)])
             .collect();
         let mut attributes = vec![
             Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
@@ -297,7 +308,7 @@ pub fn definitions(terms: &Terms, albedo_map: bool, display: bool) -> Vec<&'stat
         ("MATTER", terms.matter > 0),
         ("MATTER_MORE", terms.matter > 1),
         ("OTHER_MATTER", terms.other_matter),
-        ("PARTICLES", terms.particles),
+        ("PARTICLES", terms.sorts > 0),
         ("BODY", terms.body),
         ("MEDIA_INDEX", terms.media_index),
         ("GLOSS", terms.retro || terms.anisotropic),

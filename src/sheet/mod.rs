@@ -2,6 +2,7 @@
 
 pub mod material;
 pub mod mesh;
+pub mod rows;
 pub mod uniform;
 pub mod upload;
 

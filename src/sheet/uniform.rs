@@ -13,9 +13,7 @@ use crate::{
         ink::{FILM_TERMS, Film},
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
         quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
-        refraction::{PATH_ALPHA, PATH_MU},
         study::{Split, Study, Through},
-        table::{AlphaPolynomial, InterfaceTable, LOST_TERMS, MU_TERMS},
     },
 };
 pub use media::{MediaUniform, ParticleUniform};
@@ -165,32 +163,6 @@ impl MapPlace {
     }
 }
 
-/// Twin of `InterfaceTable`.
-#[derive(Clone, Copy, Debug, Default, ShaderType)]
-pub struct InterfaceUniform {
-    pub t: [Vec4; MU_TERMS],
-    pub lost: [Vec4; LOST_TERMS],
-    pub compensation: Vec4,
-    pub t_mean: Vec4,
-    pub capture: Vec4,
-    pub floor: Vec4,
-}
-
-impl InterfaceUniform {
-    /// Narrows `table`.
-    pub fn new(table: &InterfaceTable) -> Self {
-        let narrow = |over_alpha: AlphaPolynomial| DVec4::from_array(over_alpha).as_vec4();
-        Self {
-            t: table.t.map(narrow),
-            lost: table.lost.map(narrow),
-            compensation: narrow(table.compensation),
-            t_mean: narrow(table.t_mean),
-            capture: narrow(table.capture),
-            floor: narrow(table.floor),
-        }
-    }
-}
-
 /// Twin of `Film`.
 #[derive(Clone, Copy, Debug, Default, ShaderType)]
 pub struct FilmUniform {
@@ -300,12 +272,10 @@ pub struct PaperUniform {
     pub level: Vec4,
     pub light_table: Vec3,
     pub normal_out: Vec4,
-    pub interface_table: InterfaceUniform,
     pub lights: [LightUniform; MAX_LAMPS],
     pub overlays: [MapPlace; MAX_OVERLAYS],
     pub quadrature: [Vec4; GAUSS_LEGENDRE.len()],
     pub film: FilmUniform,
-    pub paths: [[Vec4; PATH_MU]; PATH_ALPHA],
     pub split: SplitUniform,
     pub through: ThroughUniform,
     pub lit_bare: Vec3,
@@ -318,6 +288,8 @@ pub struct PaperUniform {
     pub height_place: MapPlace,
     pub height_range: Vec2,
     pub height_texel: f32,
+    pub row_scale: f32,
+    pub row_offset: f32,
 }
 
 impl PaperUniform {
@@ -340,10 +312,6 @@ impl PaperUniform {
     /// Sets what the side is made of.
     pub fn set_study(&mut self, study: &Study) {
         self.film = FilmUniform::new(&study.film);
-        let slots = self.paths.iter_mut().flatten();
-        for (slot, path) in slots.zip(&study.film.paths.nodes) {
-            *slot = path.as_vec4();
-        }
         self.split = SplitUniform::new(&study.split);
         self.through = ThroughUniform::new(&study.through);
     }

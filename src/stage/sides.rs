@@ -30,7 +30,8 @@ use crate::{
     sheet::{
         PaperMaps, PaperMaterial,
         mesh::SideSurface,
-        uniform::{InterfaceUniform, MapPlace, MediaUniform, PaperUniform},
+        rows::Rows,
+        uniform::{MapPlace, MediaUniform, PaperUniform},
         upload::profile_image,
     },
 };
@@ -149,10 +150,13 @@ pub fn arrange(
                     Held::Surface(_) => None,
                 })
                 .unzip();
+            let (paper, rows) = constants(drawing, side, &facts);
+            let mut maps = bound(side, images_of_side);
+            maps.rows = rows.map(|rows| images.add(rows.image()));
             let material = materials.add(PaperMaterial {
-                paper: constants(drawing, side, &facts),
+                paper,
                 terms: side.terms,
-                maps: bound(side, images_of_side),
+                maps,
                 display: arranged.display,
             });
             let mesh = meshes.add(side_surface(&surface, drawing, side.side).mesh());
@@ -193,7 +197,7 @@ pub fn arrange(
 }
 
 /// What does not change while the sheet and the lamps move.
-fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUniform {
+fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUniform, Option<Rows>) {
     let paper = &drawing.paper;
     let mut uniform = PaperUniform {
         table: Vec3::splat(TABLE),
@@ -246,33 +250,25 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
         1.0
     };
     let alpha = alpha_towards(paper.roughness, combed, DVec3::Z);
-    let here = || InterfaceTable::at_roughness(alpha, paper.index, paper.specular);
+    let here = InterfaceTable::at_roughness(alpha, paper.index, paper.specular);
+    let mean = here.mean_at(alpha);
     if side.terms.tier.is_coupled() {
-        let here = here();
-        let mean = here.mean_at(alpha);
         let lit = |of: &tier::Surface| albedo_of(of, &mean).max(DVec3::splat(1e-3)).as_vec3();
         (uniform.lit_bare, uniform.other_bare) = (lit(&seen), lit(&other));
-        let table = if varies || side.terms.anisotropic {
-            InterfaceTable::new(paper.index, paper.specular)
-        } else {
-            here
-        };
-        uniform.interface_table = InterfaceUniform::new(&table);
     }
+    let mut paths = None;
     if side.terms.tier == Tier::Study || side.terms.transmission {
-        let here = here();
-        let mean = here.mean_at(alpha);
         let eta = if side.terms.media_index {
             side.media.film_index(paper.index)
         } else {
             paper.index
         };
-        let paths = if varies {
+        let of_films = if varies {
             PathTable::new(eta)
         } else {
             Arc::new(PathTable::at_roughness(paper.roughness, eta))
         };
-        let mut study = Study::new(&seen, &here, paths, slab(paper));
+        let mut study = Study::new(&seen, &here, of_films, slab(paper));
         let media = Media::new(&side.media, &seen, &mean, &study);
         let on_other = Media::new(&side.other_media, &seen, &mean, &study);
         if side.terms.media_index {
@@ -280,6 +276,18 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
         }
         uniform.set_study(&study);
         uniform.media = MediaUniform::new(&media, &on_other, paper, side.side);
+        paths = Some(study.film.paths);
+    }
+    let rows = side.terms.tier.is_coupled().then(|| {
+        if varies || side.terms.anisotropic {
+            let table = InterfaceTable::new(paper.index, paper.specular);
+            Rows::over_roughness(&table, paths.as_deref())
+        } else {
+            Rows::at_roughness(&here, paths.as_deref(), alpha)
+        }
+    });
+    if let Some(rows) = &rows {
+        [uniform.row_scale, uniform.row_offset] = rows.place().to_array();
     }
     // With shared coordinates, the vertex shader reads the albedo's place for every map.
     if let Some(first) = side.maps.first() {
@@ -308,7 +316,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> PaperUnifo
             }
         }
     }
-    uniform
+    (uniform, rows)
 }
 
 /// The sheet's body; its absorption follows from its albedo.

@@ -13,7 +13,7 @@ use recto::{
             Film, beyond_capture, capture_path, inner_cosine, internal_reflectance, optical_depth,
         },
         microfacet::v_hammon,
-        refraction::{PathTable, crossed, mean_inner_cosine, steeper_by},
+        refraction::{PathTable, crossed, mean_inner_cosine, smooth_cosine, steeper_by},
         relief::{SHORTENING_NOISE, march_reach, mean_length, rise_of, slope_variance, widened},
         slab::Phase,
         study::{
@@ -105,9 +105,11 @@ fn inner_cosines() -> Twins {
     let mut mus = cosines();
     mus.extend([0.0, 1.0 + f32::EPSILON]);
     Twins {
-        name: "inner_cosine",
-        body: "found[to] = inner_cosine(given[at], given[at + 1u]);".into(),
-        twin: |x| vec![inner_cosine(x[0], x[1])],
+        name: "inner_cosine, smooth_cosine",
+        body: "found[to] = inner_cosine(given[at], given[at + 1u]);
+            found[to + 1u] = smooth_cosine(given[at], given[at + 1u]);"
+            .into(),
+        twin: |x| vec![inner_cosine(x[0], x[1]), smooth_cosine(x[0], x[1])],
         relative: |_| RELATIVE,
         cases: grid(&[mus, etas]),
     }

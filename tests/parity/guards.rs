@@ -185,7 +185,7 @@ const GUARDS: [Guard; 35] = [
     Guard(5, "widened", "ALPHA_MIN, 1.0", "0.0, 1.0", compare_relief),
     Guard(
         5,
-        "fit_powers",
+        "fit_root",
         "clamp(alpha, ALPHA_FIT_MIN, 1.0)",
         "alpha",
         compare_interfaces,
@@ -193,7 +193,7 @@ const GUARDS: [Guard; 35] = [
     Guard(
         5,
         "brdf_gallery_specular",
-        " + mean.compensation * at_i.lost * at_o.lost",
+        " + mean.compensation * at_i.late * at_o.late",
         "",
         |gpu, text| brdfs()[2].compare(gpu, text),
     ),

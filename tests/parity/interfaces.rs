@@ -14,101 +14,76 @@ pub fn words<T: ShaderType + WriteInto>(uniform: &T) -> Vec<f32> {
 }
 
 /// What the terms of a polynomial add up to before they cancel, times the rounding of each.
-fn polynomial_rounding(coefficients: &[AlphaPolynomial], mu: f64, alpha: f64) -> f64 {
-    let (x, s) = (mu.sqrt(), alpha.clamp(ALPHA_FIT_MIN, 1.0).sqrt());
-    let powers = |of: f64, k: usize| of.powi(k as i32);
-    let sum: f64 = coefficients
-        .iter()
-        .enumerate()
-        .map(|(i, over_s)| {
-            let terms = over_s.iter().enumerate();
-            powers(x, i) * terms.map(|(j, c)| c.abs() * powers(s, j)).sum::<f64>()
-        })
-        .sum();
+fn polynomial_rounding(coefficients: &[f64], mu: f64) -> f64 {
+    let terms = coefficients.iter().enumerate();
+    let sum: f64 = terms.map(|(k, c)| c.abs() * mu.sqrt().powi(k as i32)).sum();
     sum * UNIT_PRODUCT
 }
 
+/// Roughness beyond what is fitted too.
+fn fit_roots() -> Twins {
+    let cases = [-1.0, 0.0, 1.5, 9.0].into_iter().chain(alphas());
+    Twins {
+        name: "fit_root",
+        body: "found[to] = fit_root(given[at]);".into(),
+        twin: |x| vec![fit_root(x[0])],
+        relative: |_| RELATIVE,
+        cases: cases.map(|alpha| vec![alpha]).collect(),
+    }
+}
+
 pub fn compare_interfaces(gpu: &Gpu, physics: &str) -> Result<f64, String> {
-    let mut worst = 0.0f64;
-    let mut tables: Vec<(String, bool, InterfaceTable)> = Vec::new();
+    let mut worst = fit_roots().compare(gpu, physics)?;
+    let mut rows: Vec<(String, InterfaceRow)> = Vec::new();
     for (index, specular) in [(1.0, 1.0), (1.5, 1.0), (1.5, 0.3), (3.0, 1.0)] {
         let name = format!("interface of index {index}, specular {specular}");
-        tables.push((name.clone(), true, InterfaceTable::new(index, specular)));
+        let table = InterfaceTable::new(index, specular);
+        for alpha in alphas().into_iter().map(f64::from) {
+            rows.push((format!("{name}, fitted, α {alpha}"), table.row(alpha)));
+        }
         for alpha in [0.0, 0.01, 0.5] {
-            let table = InterfaceTable::at_roughness(alpha, index, specular);
-            tables.push((format!("{name}, α {alpha}"), false, table));
+            let here = InterfaceTable::at_roughness(alpha, index, specular);
+            rows.push((format!("{name}, α {alpha}"), here.row(alpha)));
         }
     }
     let mut cosines = cosines();
     cosines.extend([0.0, 0.25, 0.9999]);
-    let cases = grid(&[cosines, alphas()]);
-    for (name, fitted, table) in &tables {
-        let uniform = words(&InterfaceUniform::new(table));
-        // Table first, then the cases, as one array of numbers.
-        let table_words = uniform.len();
-        let vector = |at: usize| {
-            let numbers: Vec<String> = (at..at + 4).map(|i| format!("given[{i}u]")).collect();
-            format!("vec4({})", numbers.join(", "))
-        };
-        let vectors: Vec<String> = (0..table_words).step_by(4).map(vector).collect();
-        let (t, rest) = vectors.split_at(MU_TERMS);
-        let (lost, means) = rest.split_at(LOST_TERMS);
-        let powers = if *fitted {
-            "fit_powers(alpha)"
-        } else {
-            "vec4(1.0, 0.0, 0.0, 0.0)"
-        };
+    let cases = grid(&[cosines]);
+    for (name, row) in &rows {
+        let uniform = words(&RowUniform::new(row));
+        let from = uniform.len();
+        let numbers: Vec<String> = (0..from).map(|i| format!("given[{i}u]")).collect();
+        let (t, late) = numbers.split_at(MU_TERMS);
         let body = format!(
-            "let table = InterfaceTable(array({}), array({}), {});
-            let mu = given[{table_words}u + 2u * index];
-            let alpha = given[{table_words}u + 2u * index + 1u];
-            let p = {powers};
-            let at_mu = interface_at(interface_row(table, p), mu);
-            let mean = interface_mean_at(table, p);
+            "let row = InterfaceRow(array<f32, 7>({}), array<f32, 7>({}));
+            let at_mu = interface_at(row, given[{from}u + index]);
             found[to] = at_mu.t;
-            found[to + 1u] = at_mu.lost;
-            found[to + 2u] = mean.compensation;
-            found[to + 3u] = mean.t_mean;
-            found[to + 4u] = mean.capture;
-            found[to + 5u] = mean.floor;",
+            found[to + 1u] = at_mu.late;",
             t.join(", "),
-            lost.join(", "),
-            means.join(", ")
+            late.join(", "),
         );
-        let text = format!("{physics}\n{}", entry("f32", cases.len(), 6, &body));
+        let text = format!("{physics}\n{}", entry("f32", cases.len(), 2, &body));
         let given = [uniform, cases.concat()].concat();
-        let found = gpu.run(&text, &given, cases.len(), 6);
+        let found = gpu.run(&text, &given, cases.len(), 2);
         let pairs: Vec<Pair> = cases
             .iter()
-            .zip(found.chunks(6))
+            .zip(found.chunks(2))
             .flat_map(|(case, found)| {
-                let (mu, alpha) = (f64::from(case[0]), f64::from(case[1]));
-                let (at, mean) = (table.at(mu, alpha), table.mean_at(alpha));
-                let expected = [
-                    at.t,
-                    at.lost,
-                    mean.compensation,
-                    mean.t_mean,
-                    mean.capture,
-                    mean.floor,
-                ];
-                let rounding = [
-                    polynomial_rounding(&table.t, mu, alpha),
-                    polynomial_rounding(&table.lost, mu, alpha),
-                    polynomial_rounding(&[table.compensation], mu, alpha),
-                    polynomial_rounding(&[table.t_mean], mu, alpha),
-                    polynomial_rounding(&[table.capture], mu, alpha),
-                    polynomial_rounding(&[table.floor], mu, alpha),
-                ];
-                std::array::from_fn::<_, 6, _>(|k| {
-                    let mut pair = Pair::new(found[k], expected[k], RELATIVE);
-                    pair.allowed += rounding[k];
+                let mu = f64::from(case[0]);
+                let at = interface_at(row, mu);
+                let pair = |found: f32, exact: f64, coefficients: &[f64]| {
+                    let mut pair = Pair::new(found, exact, RELATIVE);
+                    pair.allowed += polynomial_rounding(coefficients, mu);
                     pair
-                })
+                };
+                [
+                    pair(found[0], at.t, &row.t),
+                    pair(found[1], at.late, &row.late),
+                ]
             })
             .collect();
         let error = judge(name, &pairs, |i| {
-            format!("{:?}, output {}", cases[i / 6], i % 6)
+            format!("{:?}, output {}", cases[i / 2], i % 2)
         })?;
         worst = worst.max(error);
     }

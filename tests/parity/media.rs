@@ -269,7 +269,7 @@ fn surfaces() -> Twins {
                 &[&format!("brdf_body({}, at_i, at_o, mean)", colour_at(0))],
                 &[
                     "other.t",
-                    "other.lost",
+                    "other.late",
                     "means.compensation",
                     "means.t_mean",
                     "means.capture",
@@ -281,11 +281,11 @@ fn surfaces() -> Twins {
             let (at_i, at_o) = (
                 Interface {
                     t: x[3],
-                    lost: x[4],
+                    late: x[4],
                 },
                 Interface {
                     t: x[5],
-                    lost: x[6],
+                    late: x[6],
                 },
             );
             let mean = InterfaceMean {
@@ -300,7 +300,7 @@ fn surfaces() -> Twins {
                 &[brdf_body(colour(x, 0), &at_i, &at_o, &mean)],
                 &[
                     other.t,
-                    other.lost,
+                    other.late,
                     means.compensation,
                     means.t_mean,
                     means.capture,
@@ -360,11 +360,11 @@ fn combed() -> Twins {
             let (at_i, at_o) = (
                 Interface {
                     t: x[10],
-                    lost: x[11],
+                    late: x[11],
                 },
                 Interface {
                     t: x[12],
-                    lost: x[13],
+                    late: x[13],
                 },
             );
             let mean = InterfaceMean {

@@ -7,12 +7,15 @@ use recto::{
         fresnel::fresnel_conductor,
         ink::{capture_path, internal_reflectance, optical_depth},
         microfacet::{d_ggx_anisotropic, v_smith_anisotropic},
-        refraction::{PathTable, path_alpha, path_between, path_mu},
+        refraction::{PathRow, PathTable, path_at, smooth_cosine},
         slab::{Phase, Slab},
         study::{Seen, Study, Ways, brdf_study, brdf_study_diffuse, btdf_study, through_study},
         tier::albedo_of,
     },
-    sheet::uniform::{FilmUniform, SplitUniform, ThroughUniform},
+    sheet::{
+        rows::narrow_paths,
+        uniform::{FilmUniform, SplitUniform, ThroughUniform},
+    },
 };
 
 pub fn conductors() -> Twins {
@@ -83,38 +86,91 @@ pub fn judge_facets(gpu: &Gpu) {
     compare_anisotropic(gpu, bsdf()).unwrap();
 }
 
-fn places_and_paths() -> Twins {
-    let seeded = Seeded::new(14);
-    Twins {
-        name: "path_mu, path_alpha, path_between",
-        body: "found[to] = path_mu(given[at]);
-            found[to + 1u] = path_alpha(given[at + 1u]);
-            let p = path_between(vec4(given[at + 2u]), vec4(given[at + 3u]),
-                vec4(given[at + 4u]), vec4(given[at + 5u]), given[at], given[at + 1u]);
-            found[to + 2u] = p.w;"
-            .into(),
-        twin: |x| {
-            let [a, b, c, d] = [2, 3, 4, 5].map(|i| DVec4::splat(x[i]));
-            let between = path_between(a, b, c, d, x[0], x[1]).w;
-            vec![path_mu(x[0]), path_alpha(x[1]), between]
-        },
-        relative: |_| RELATIVE,
-        cases: (0..100_000)
-            .map(|_| {
-                let (mu, alpha) = (seeded.log_or_zero(1e-9, 1.0), seeded.log(1e-4, 1.0));
-                let node = || seeded.log(1.0, 100.0);
-                [mu, alpha, node(), node(), node(), node()]
-                    .map(|x| x as f32)
-                    .to_vec()
-            })
-            .collect(),
+/// P at some depths, over interfaces from none to a diamond's and beyond.
+pub fn compare_paths(gpu: &Gpu, physics: &str) -> Result<f64, String> {
+    const DEPTHS: [f64; 4] = [0.0, 0.25, 0.5, 0.875];
+    let over = |path: DVec4, w: f64| path.x + w * (path.y + w * (path.z + w * path.w));
+    let mut worst = 0.0f64;
+    let mut rows: Vec<(String, f64, PathRow)> = Vec::new();
+    for n in [1.0, 1.01, 1.5, 3.0] {
+        for alpha in alphas().into_iter().map(f64::from) {
+            let row = PathTable::new(n).row(alpha);
+            rows.push((format!("paths of index {n}, fitted, α {alpha}"), n, row));
+        }
+        for alpha in [0.0, 0.5] {
+            let row = PathTable::at_roughness(alpha, n).row(alpha);
+            rows.push((format!("paths of index {n}, α {alpha}"), n, row));
+        }
     }
+    let mut cosines = cosines();
+    cosines.extend([0.0, 0.25, 0.9999]);
+    let cases = grid(&[cosines]);
+    for (name, n, row) in &rows {
+        let constants: Vec<f32> = [*n as f32]
+            .into_iter()
+            .chain(narrow_paths(row).iter().flat_map(|term| term.to_array()))
+            .collect();
+        let from = constants.len();
+        let terms: Vec<String> = (1..from)
+            .step_by(4)
+            .map(|at| {
+                let numbers: Vec<String> = (at..at + 4).map(|i| format!("given[{i}u]")).collect();
+                format!("vec4({})", numbers.join(", "))
+            })
+            .collect();
+        let found: Vec<String> = DEPTHS
+            .iter()
+            .enumerate()
+            .map(|(k, w)| {
+                format!("found[to + {k}u] = p.x + {w} * (p.y + {w} * (p.z + {w} * p.w));")
+            })
+            .collect();
+        let body = format!(
+            "let row = array<vec4<f32>, 7>({});
+            let p = path_at(row, given[{from}u + index], given[0]);
+            {}",
+            terms.join(", "),
+            found.join("\n")
+        );
+        let text = format!(
+            "{physics}\n{}",
+            entry("f32", cases.len(), DEPTHS.len(), &body)
+        );
+        let given = [constants, cases.concat()].concat();
+        let found = gpu.run(&text, &given, cases.len(), DEPTHS.len());
+        let pairs: Vec<Pair> = cases
+            .iter()
+            .zip(found.chunks(DEPTHS.len()))
+            .flat_map(|(case, found)| {
+                let mu = f64::from(case[0]);
+                let path = path_at(row, mu, *n);
+                let rounding = path_rounding(row, mu, *n);
+                std::array::from_fn::<_, { DEPTHS.len() }, _>(|k| {
+                    let mut pair = Pair::new(found[k], over(path, DEPTHS[k]), RELATIVE);
+                    pair.allowed += rounding;
+                    pair
+                })
+            })
+            .collect();
+        let error = judge(name, &pairs, |i| {
+            format!(
+                "{:?}, w {}",
+                cases[i / DEPTHS.len()],
+                DEPTHS[i % DEPTHS.len()]
+            )
+        })?;
+        worst = worst.max(error);
+    }
+    Ok(worst)
 }
 
-pub fn compare_paths(gpu: &Gpu, physics: &str) -> Result<f64, String> {
-    // The root of the least roughness is taken from those of others.
-    const ROOTS: f64 = 4e-6;
-    places_and_paths().compare_rounded(gpu, physics, |_| ROOTS)
+/// What the terms of P add up to before they cancel, times the rounding of each.
+fn path_rounding(row: &PathRow, mu: f64, n: f64) -> f64 {
+    let terms = row.iter().enumerate();
+    let sum: f64 = terms
+        .map(|(k, c)| c.abs().element_sum() * mu.sqrt().powi(k as i32))
+        .sum();
+    sum * UNIT_PRODUCT / smooth_cosine(mu, n)
 }
 
 /// Papers at the extremes: index, roughness, bare albedo, σs, thickness in mm, phase.
@@ -201,11 +257,11 @@ fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVe
     let (at_i, at_o) = (
         Interface {
             t: x[4],
-            lost: x[5],
+            late: x[5],
         },
         Interface {
             t: x[6],
-            lost: x[7],
+            late: x[7],
         },
     );
     let (front, back) = (DVec3::from_slice(&x[8..]), DVec3::from_slice(&x[11..]));

@@ -261,7 +261,7 @@ fn the_interface_is_what_its_integral_says() {
                 for table in [&own, &fitted] {
                     let (at, mean) = (table.at(mu, alpha), table.mean_at(alpha));
                     let compensation = over_hemisphere(|mu_i| {
-                        mean.compensation * at.lost * table.at(mu_i, alpha).lost
+                        mean.compensation * at.late * table.at(mu_i, alpha).late
                     });
                     let error = (1.0 - lobe - compensation - at.t).abs();
                     worst[0] = worst[0].max(error);

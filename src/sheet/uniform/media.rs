@@ -40,7 +40,6 @@ impl ParticleUniform {
 pub struct MediaUniform {
     pub particles: [ParticleUniform; MAX_PARTICLES],
     pub body_albedo: Vec3,
-    pub particle_count: u32,
     pub body_through: Vec3,
     pub film_eta: f32,
     pub film_gain: Vec3,
@@ -61,7 +60,6 @@ impl MediaUniform {
     /// they lie on side `name`.
     pub fn new(media: &Media, other: &Media, paper: &Paper, name: SideName) -> Self {
         let mut uniform = Self {
-            particle_count: media.particles.len().min(MAX_PARTICLES) as u32,
             body_albedo: media.body_albedo.as_vec3(),
             body_through: media.body_through.as_vec3(),
             film_eta: media.film_eta as f32,
