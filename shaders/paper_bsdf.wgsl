@@ -298,6 +298,8 @@ struct Split {
     depth: f32,
     leaning: vec3<f32>,
     inner_mean: f32,
+    alike: f32,
+    captured: f32,
     of_direction: vec4<f32>,
     forward_share: f32,
     g_forward: f32,
@@ -313,9 +315,13 @@ struct Through {
     transmitted_leaning: vec3<f32>,
     straight_mean: vec3<f32>,
     flat_share: vec3<f32>,
+    toned: array<vec3<f32>, 4>,
+    lightest: vec3<f32>,
 }
 
+const TONE_MIN: f32 = 0.2;
 const DIFFUSE_COSINE: f32 = 0.66666666666667;
+const LOST_DEPTH: f32 = 0.16666666666667;
 
 fn crossing(through: Through, seen: Seen, m_f: f32, m_b: vec3<f32>, eta: f32) -> vec3<f32> {
     let t = min(through.transmitted * seen.clear, through.reflected + through.transmitted);
@@ -361,11 +367,15 @@ fn split_mean(split: Split, mu: f32) -> f32 {
 }
 
 fn split_shape(
-    split: Split, q: f32, mu_i: f32, mu_o: f32, m_i: f32, m_o: f32,
+    split: Split, q: f32, g: Facing, m_i: f32, m_o: f32, depth: vec3<f32>,
 ) -> vec3<f32> {
-    let once = q - split_mean(split, mu_i) - split_mean(split, mu_o) + split.mean;
+    let once = q - split_mean(split, g.mu_i) - split_mean(split, g.mu_o) + split.mean;
     let slanted = 2.0 * split.inner_mean - m_i - m_o;
-    return max(1.0 + split.kappa * once + split.leaning * slanted, vec3(0.0)) * split.at_capture;
+    let lost = depth / (depth + LOST_DEPTH) * (split.inner_mean - DIFFUSE_COSINE);
+    let alike = (m_i - split.inner_mean) * (m_o - split.inner_mean)
+        + lost * (m_i + m_o - split.captured);
+    let shape = 1.0 + split.kappa * once + split.leaning * slanted + split.alike * alike;
+    return max(shape, vec3(0.0)) * split.at_capture;
 }
 
 struct Ways {
@@ -406,10 +416,17 @@ fn brdf_study_diffuse(
     let q = single_scatter(split, s.eta, g, inner_i, inner_o);
     let m_i = mean_inner_cosine(ways.path_i);
     let m_o = mean_inner_cosine(ways.path_o);
-    let shape = split_shape(split, q, g.mu_i, g.mu_o, m_i, m_o);
+    let shape = split_shape(split, q, g, m_i, m_o, depth);
     let through_ink = beyond_capture(depth, ways.capture, ways.path_i, ways.path_o);
     let coupled = at_i.t * at_o.t * mean.capture;
     return paper * coupled * through_ink * shape * INV_PI;
+}
+
+fn toned_paper(through: Through, share: vec3<f32>) -> vec3<f32> {
+    let x = clamp(share, vec3(TONE_MIN), through.lightest);
+    let ln_x = log(x);
+    let c = through.toned;
+    return exp(((c[3] * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0]);
 }
 
 struct Seen {

@@ -10,7 +10,7 @@
     brdf_study_diffuse, btdf_study, capture_floor, facing, fit_root, fresnel_dielectric,
     ies_angles, interface_at, internal_reflectance, light_disc,
     light_distant, light_ies, light_punctual, light_rectangle, mean_inner_cosine, mean_length,
-    optical_depth, path_at, through_study, widened,
+    optical_depth, path_at, through_study, toned_paper, widened,
 }
 #import "embedded://recto/paper_media.wgsl"::{
     CAPTURE_COS_D, SHEEN_MEAN,
@@ -684,30 +684,32 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef TIER_STUDY
     // What covers either side lets less through.
     var baked = vec3(1.0);
+    var ink_f = share_f;
+    var ink_b = share_b;
+    var depth_f = darkness;
+    var depth_b = optical_depth(paper.film, capture, share_b);
 #ifdef MATTER
-    baked *= passing(cover, paper.media.body_through);
+    // Where no ink lies, the paper itself is dark or light.
+    let toned = toned_paper(paper.through, share_f);
+    baked *= passing(cover, paper.media.body_through, toned);
+    depth_f = veiled(cover, paper.media.body_through, toned, darkness);
+    ink_f = mix(vec3(1.0), ink_f, cover.film);
 #endif
 #ifdef OTHER_MATTER
-    baked *= passing(other_cover, paper.media.other_body_through);
+    // The paper's own tone is seen, and counted, on this side.
+    baked *= passing(other_cover, paper.media.other_body_through, vec3(1.0));
+    depth_b = veiled(other_cover, paper.media.other_body_through, vec3(1.0), depth_b);
+    ink_b = mix(vec3(1.0), ink_b, other_cover.film);
 #endif
 #ifdef SHEEN
     baked *= 1.0 - sheen * sheen_albedo(max(dot(n, v), MU_MIN));
-#endif
-#ifdef BODY
-    let depth_f = veiled(cover, paper.media.body_through, darkness);
-#else
-    let depth_f = darkness;
-#endif
-    var depth_b = optical_depth(paper.film, capture, share_b);
-#ifdef OTHER_MATTER
-    depth_b = veiled(other_cover, paper.media.other_body_through, depth_b);
 #endif
     let seen = Seen(
         depth_f,
         clear,
         depth_b,
-        internal_reflectance(paper.film, share_f),
-        internal_reflectance(paper.film, share_b),
+        internal_reflectance(paper.film, ink_f),
+        internal_reflectance(paper.film, ink_b),
     );
 #else
     // Light crosses each ink once, where the photograph saw it crossed twice.

@@ -100,7 +100,7 @@ fn text(tier: Tier) -> String {
                 return btdf_study(
                     specimen.through, seen, at_i, interface_at(specimen.row, mu_o), mean,
                     path_towards(g.mu_i), path_towards(mu_o), s.eta,
-                ) * passing(cover, specimen.body_through);
+                ) * passing(cover, specimen.body_through, vec3(1.0));
             }}
             let particle = specimen.particle;
             let albedo = particle.albedo * shares.scale;

@@ -20,6 +20,7 @@ use recto::{
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
         refraction::COSINE_MIN,
+        study::{DIFFUSE_COSINE, LOST_DEPTH, TONE_MIN, TONE_TERMS},
         table::{ALPHA_FIT_MIN, LATE_TERMS, MU_TERMS},
     },
     sheet::{
@@ -254,6 +255,13 @@ fn constants_of_the_shaders_are_those_of_the_sources() {
     assert_eq!(constant(PAPER_BSDF, "MU_MIN"), MU_MIN);
     assert_eq!(constant(PAPER_BSDF, "ALPHA_FIT_MIN"), ALPHA_FIT_MIN);
     assert_eq!(constant(PAPER_BSDF, "COSINE_MIN"), COSINE_MIN);
+    assert_eq!(constant(PAPER_BSDF, "TONE_MIN"), TONE_MIN);
+    for (name, value) in [
+        ("DIFFUSE_COSINE", DIFFUSE_COSINE),
+        ("LOST_DEPTH", LOST_DEPTH),
+    ] {
+        assert_eq!(constant(PAPER_BSDF, name) as f32, value as f32, "{name}");
+    }
     assert_eq!(constant(PAPER_BASELINES, "BASE_MIN"), BASE_MIN);
     assert_eq!(constant(PAPER_MEDIA, "SHARE_LEAST"), SHARE_LEAST);
     assert_eq!(constant(PAPER_MEDIA, "SHEEN_MEAN"), SHEEN_MEAN);
@@ -394,6 +402,8 @@ impl Sentinel {
             depth: self.f32(),
             leaning: self.vec3(),
             inner_mean: self.f32(),
+            alike: self.f32(),
+            captured: self.f32(),
             of_direction: self.vec4(),
             forward_share: self.f32(),
             g_forward: self.f32(),
@@ -411,6 +421,8 @@ impl Sentinel {
             transmitted_leaning: self.vec3(),
             straight_mean: self.vec3(),
             flat_share: self.vec3(),
+            toned: std::array::from_fn::<_, TONE_TERMS, _>(|_| self.vec3()),
+            lightest: self.vec3(),
         })
     }
 

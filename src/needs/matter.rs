@@ -140,14 +140,18 @@ pub(super) fn behind(
         return SideMedia::default();
     }
     let media = side_media(exhibit, &other.media);
-    if media.bodies.is_empty() && media.particles.is_empty() {
+    if media == SideMedia::default() {
         return SideMedia::default();
     }
     let slot = |medium: usize| slot_of(&exhibit.media[medium].matter);
     let Some(mut stack) = MediaStack::new(&other.media, slot) else {
         return SideMedia::default();
     };
-    say("media maps of the other side: particles and body colour there hold light back".into());
+    say(
+        "media maps of the other side: ink, particles and body colour there hold light back, and \
+         the paper's own tone does not twice"
+            .into(),
+    );
     stack.file.uv_from_side *= turn;
     terms.other_matter = true;
     maps.push(MapUse::OtherMatter(stack));

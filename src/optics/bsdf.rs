@@ -218,7 +218,7 @@ impl Specimen {
             self.path(mu_o),
             s.eta,
         );
-        f * passing(&self.cover, self.body_through)
+        f * passing(&self.cover, self.body_through, DVec3::ONE)
     }
 
     /// What goes straight through, to an eye opposite the light.
@@ -230,7 +230,7 @@ impl Specimen {
         let mu = l.z.max(MU_MIN);
         let t = self.interface.at(mu, self.surface.alpha).t;
         let depth = self.seen().depth_b + self.study.through.ballistic;
-        let passed = passing(&self.cover, self.body_through);
+        let passed = passing(&self.cover, self.body_through, DVec3::ONE);
         passed * (t * t) * crossed(self.path(mu), depth)
     }
 

@@ -37,7 +37,7 @@ const FIT_ALPHA: usize = 9;
 /// Coefficients of P over powers of w = τ/(1 + τ).
 const TERMS: usize = 4;
 /// Walks of one node.
-const WALKS: u32 = 4096;
+const WALKS: u32 = 8192;
 /// Smoother than this, an interface refracts as a plane.
 const ALPHA_SMOOTH: f64 = 1e-3;
 /// Indices nearer to 1 than this refract nothing.
@@ -234,7 +234,7 @@ pub(super) fn sent_back_late(mu: f64, alpha: f64, n: f64, walks: u32) -> f64 {
 /// inside, and back: (1/μ + 1/μ″, share of what comes back), few enough to sum over.
 pub fn ways_back(alpha: f64, n: f64) -> Vec<(f64, f64)> {
     const DIRECTIONS: u32 = 64;
-    const WALKS: u32 = 128;
+    const WALKS: u32 = 8192;
     const BINS: usize = 128;
     let mut bins = [(0.0, 0.0); BINS];
     let mut add = |way: f64, weight: f64| {

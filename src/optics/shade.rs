@@ -9,10 +9,10 @@ use super::{
     bsdf::Specimen,
     ink::{beyond_capture, internal_reflectance, optical_depth},
     lamp::{Incidence, Light, Shape},
-    matter::passing,
+    matter::{passing, veiled},
     microfacet::MU_MIN,
     refraction::mean_inner_cosine,
-    study::{Seen, through_study},
+    study::{Seen, through_study, toned_paper},
     tier::{Surface, Tier, albedo_of, brdf_lambert},
 };
 
@@ -140,15 +140,18 @@ impl Spot {
             self.specimen.capture(),
             self.specimen.path(mu_o.max(MU_MIN)),
         );
+        let (cover, body_through) = (&self.specimen.cover, self.specimen.body_through);
         let (seen, baked) = if tier == Tier::Study {
+            let toned = toned_paper(&study.through, share_f);
+            let darkness = optical_depth(film, capture, share_f);
             let seen = Seen {
-                depth_f: self.specimen.depth(),
+                depth_f: veiled(cover, body_through, toned, darkness),
                 clear: behind.clear,
                 depth_b: optical_depth(film, capture, share_b),
-                rho_f: internal_reflectance(film, share_f),
+                rho_f: internal_reflectance(film, DVec3::ONE.lerp(share_f, cover.film)),
                 rho_b: internal_reflectance(film, share_b),
             };
-            (seen, DVec3::ONE)
+            (seen, passing(cover, body_through, toned))
         } else {
             let r_i = DVec3::splat(1.0 - mean.t_mean / (s.eta * s.eta));
             let seen = Seen {
@@ -158,10 +161,10 @@ impl Spot {
                 rho_f: r_i,
                 rho_b: r_i,
             };
-            (seen, crossed_once(share_f) * crossed_once(share_b))
+            let baked = crossed_once(share_f) * crossed_once(share_b);
+            (seen, baked * passing(cover, body_through, DVec3::ONE))
         };
-        let passed = passing(&self.specimen.cover, self.specimen.body_through);
-        passed * baked * through_study(film, &study.through, &seen, &at_o, &mean, path_o, s.eta)
+        baked * through_study(film, &study.through, &seen, &at_o, &mean, path_o, s.eta)
     }
 }
 

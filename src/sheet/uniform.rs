@@ -13,7 +13,7 @@ use crate::{
         ink::{FILM_TERMS, Film},
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
         quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
-        study::{Split, Study, Through},
+        study::{Split, Study, TONE_TERMS, Through},
     },
 };
 pub use media::{MediaUniform, ParticleUniform};
@@ -192,6 +192,8 @@ pub struct SplitUniform {
     pub depth: f32,
     pub leaning: Vec3,
     pub inner_mean: f32,
+    pub alike: f32,
+    pub captured: f32,
     pub of_direction: Vec4,
     pub forward_share: f32,
     pub g_forward: f32,
@@ -208,6 +210,8 @@ impl SplitUniform {
             depth: split.depth as f32,
             leaning: split.leaning.as_vec3(),
             inner_mean: split.inner_mean as f32,
+            alike: split.alike as f32,
+            captured: split.captured as f32,
             of_direction: split.of_direction.as_vec4(),
             forward_share: split.phase.forward_share as f32,
             g_forward: split.phase.g_forward as f32,
@@ -227,6 +231,8 @@ pub struct ThroughUniform {
     pub transmitted_leaning: Vec3,
     pub straight_mean: Vec3,
     pub flat_share: Vec3,
+    pub toned: [Vec3; TONE_TERMS],
+    pub lightest: Vec3,
 }
 
 impl ThroughUniform {
@@ -241,6 +247,8 @@ impl ThroughUniform {
             transmitted_leaning: through.transmitted_leaning.as_vec3(),
             straight_mean: through.straight_mean.as_vec3(),
             flat_share: through.flat_share.as_vec3(),
+            toned: through.toned.map(|c| c.as_vec3()),
+            lightest: through.lightest.as_vec3(),
         }
     }
 }

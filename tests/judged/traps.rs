@@ -80,12 +80,7 @@ fn traps_2_and_4_quotients_are_guarded_before_they_are_taken() {
     let through = Through {
         reflected: all,
         inner_mean: 1.0,
-        transmitted: none,
-        ballistic: none,
-        reflected_leaning: none,
-        transmitted_leaning: none,
-        straight_mean: none,
-        flat_share: none,
+        ..Through::default()
     };
     let seen = Seen {
         depth_f: none,

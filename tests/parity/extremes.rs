@@ -186,11 +186,9 @@ fn through_of(x: &[f64]) -> (Through, Seen) {
         reflected: v(0),
         inner_mean: x[22],
         transmitted: v(3),
-        ballistic: DVec3::ZERO,
         reflected_leaning: v(6),
         transmitted_leaning: v(9),
-        straight_mean: DVec3::ZERO,
-        flat_share: DVec3::ZERO,
+        ..Through::default()
     };
     let seen = Seen {
         depth_f: DVec3::ZERO,
@@ -208,7 +206,8 @@ fn crossings() -> Twins {
         name: "crossing",
         body: format!(
             "let none = vec3(0.0);
-            let through = Through({}, given[at + 22u], {}, none, {}, {}, none, none);
+            let through = Through({}, given[at + 22u], {}, none, {}, {}, none, none,
+                array(none, none, none, none), none);
             let seen = Seen(none, given[at + 18u], none, {}, {});
             {}",
             vector(0),
@@ -272,6 +271,8 @@ fn split_of(x: &[f64]) -> Split {
         depth: x[7],
         leaning: DVec3::from_slice(&x[19..]),
         inner_mean: x[22],
+        alike: x[8],
+        captured: x[19] + x[20],
         of_direction: DVec4::from_slice(&x[23..]),
         phase: Phase {
             forward_share: x[8],
@@ -288,7 +289,7 @@ fn scattering() -> Twins {
         name: "phase_lobe, phase_function, single_scatter, split_mean, split_shape",
         body: format!(
             "let split = Split({}, given[at + 3u], {}, given[at + 7u], {}, given[at + 22u],
-                vec4({}, given[at + 26u]), given[at + 8u], given[at + 9u], given[at + 10u]);
+                given[at + 8u], given[at + 19u] + given[at + 20u], vec4({}, given[at + 26u]), given[at + 8u], given[at + 9u], given[at + 10u]);
             let g = Facing(given[at + 11u], given[at + 12u], given[at + 13u], 0.0);
             {} found[to + 6u] = split_mean(split, g.mu_i);
             found[to + 3u] = phase_lobe(split.g_forward, given[at + 17u]);
@@ -300,7 +301,7 @@ fn scattering() -> Twins {
             vector(23),
             colours(
                 0,
-                "split_shape(split, given[at + 18u], g.mu_i, g.mu_o, given[at + 14u], given[at + 15u])"
+                "split_shape(split, given[at + 18u], g, given[at + 14u], given[at + 15u], vec3(given[at + 7u], given[at + 18u], 0.0))"
             ),
         ),
         twin: |x| {
@@ -311,7 +312,8 @@ fn scattering() -> Twins {
                 cos_d: x[13],
                 sin2_h: 0.0,
             };
-            let shape = split_shape(&split, x[18], x[11], x[12], x[14], x[15]).to_array();
+            let depth = DVec3::new(x[7], x[18], 0.0);
+            let shape = split_shape(&split, x[18], &g, x[14], x[15], depth).to_array();
             let others = [
                 phase_lobe(split.phase.g_forward, x[17]),
                 phase_function(&split, x[17]),

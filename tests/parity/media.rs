@@ -100,8 +100,8 @@ fn divided() -> Twins {
         "shares.lit",
         // From here on of what is hardly anything, by its share.
         "max(uncovered_share(shares, bare) * bare * max(shares.uncovered, SHARE_LEAST), vec3(0.0))",
-        "passing(cover, body)",
-        "veiled(cover, body, bare)",
+        "passing(cover, body, 2.0 * bare)",
+        "veiled(cover, body, 2.0 * bare, bare)",
     ];
     Twins {
         name: "a spot's photograph, divided",
@@ -140,8 +140,8 @@ fn divided() -> Twins {
                     cover.grains * shares.scale,
                     shares.lit,
                     of_open.max(DVec3::ZERO),
-                    passing(&cover, colour(x, 6)),
-                    veiled(&cover, colour(x, 6), bare),
+                    passing(&cover, colour(x, 6), 2.0 * bare),
+                    veiled(&cover, colour(x, 6), 2.0 * bare, bare),
                 ],
                 &[
                     shares.surface,
@@ -477,7 +477,7 @@ fn broken_media_are_found() {
         (
             divided(),
             rounding_of_albedos,
-            "uncovered * exp(-depth)",
+            "exp(-depth) * cover.film",
             "uncovered",
         ),
         (divided(), rounding_of_albedos, "* cover.film;", "* 1.0;"),

@@ -5,11 +5,14 @@ use crate::interfaces::words;
 use recto::{
     optics::{
         fresnel::fresnel_conductor,
-        ink::{capture_path, internal_reflectance, optical_depth},
+        ink::{DEPTH_MAX, capture_path, internal_reflectance, optical_depth},
         microfacet::{d_ggx_anisotropic, v_smith_anisotropic},
-        refraction::{PathRow, PathTable, path_at, smooth_cosine},
+        refraction::{PathRow, PathTable, crossed, path_at, smooth_cosine},
         slab::{Phase, Slab},
-        study::{Seen, Study, Ways, brdf_study, brdf_study_diffuse, btdf_study, through_study},
+        study::{
+            Seen, Study, TONE_MIN, Through, Ways, brdf_study, brdf_study_diffuse, btdf_study,
+            through_study, toned_paper,
+        },
         tier::albedo_of,
     },
     sheet::{
@@ -221,7 +224,7 @@ fn make_papers() -> Vec<Paper> {
 const NUMBERS: usize = 29;
 /// Where a case's paths begin.
 const PATHS: usize = 17;
-const OUTPUTS: usize = 18;
+const OUTPUTS: usize = 21;
 
 fn spots(paper: &Surface, study: &Study, count: usize) -> Vec<Vec<f32>> {
     let seeded = Seeded::new(13);
@@ -247,7 +250,7 @@ fn spots(paper: &Surface, study: &Study, count: usize) -> Vec<Vec<f32>> {
 
 /// All that the study tier computes for a spot: reflected, from a light table, from a lamp
 /// behind.
-fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVec3; 4] {
+fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVec3; 5] {
     let g = Facing {
         mu_i: x[0],
         mu_o: x[1],
@@ -298,7 +301,44 @@ fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVe
             s.eta,
         ),
         brdf_study_diffuse(&s, &g, &at_i, &at_o, mean, split, depth, &ways, lit),
+        toned_paper(through, front),
     ]
+}
+
+/// What the terms of `crossing` add up to before they cancel, dimmed by the seen side's ink, times
+/// the rounding of each.
+fn crossing_rounding(x: &[f64], study: &Study) -> f64 {
+    let through = &study.through;
+    let leaning = through.transmitted_leaning.abs() + through.reflected_leaning.abs();
+    let terms = through.reflected + through.transmitted + 4.0 * leaning * x[14];
+    let capture = DVec4::from_slice(&x[PATHS..]);
+    let depth = optical_depth(&study.film, capture, DVec3::from_slice(&x[8..]));
+    let dimmed = terms * crossed(DVec4::from_slice(&x[PATHS + 8..]), depth);
+    2.0 * UNIT_PRODUCT * dimmed.max_element()
+}
+
+/// The deepest that light crosses along a path.
+fn deepest(x: &[f64], study: &Study) -> f64 {
+    let capture = DVec4::from_slice(&x[PATHS..]);
+    let depth = |from: usize| {
+        optical_depth(&study.film, capture, DVec3::from_slice(&x[from..])).max_element()
+    };
+    // Light that goes straight through is followed to where nothing of it is left.
+    let straight = study.through.ballistic.max_element().min(DEPTH_MAX);
+    depth(8).max(depth(11)).max(straight)
+}
+
+/// The largest that the terms of [`toned_paper`]'s logarithm add up to, times what it makes of
+/// the light.
+fn toned_terms(through: &Through) -> f64 {
+    let ln_x = TONE_MIN.ln().abs();
+    let terms = through.toned.iter().rev();
+    let sum = terms.fold(DVec3::ZERO, |sum, c| sum * ln_x + c.abs());
+    let most = toned_paper(through, through.lightest)
+        .max_element()
+        .max(1.0);
+    // What it is made of is narrowed, and so is the logarithm itself.
+    2.0 * sum.max_element() * most
 }
 
 fn literal(value: f64) -> String {
@@ -334,8 +374,8 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
     let of_direction = format!("vec4({of_direction})");
     let text = format!(
         "let film = Film(array({}), array({}), {});
-        let split = Split({}, {}, {}, {}, {}, {}, {}, {}, {}, {});
-        let through = Through({}, {}, {}, {}, {}, {}, {}, {});",
+        let split = Split({}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {});
+        let through = Through({}, {}, {}, {}, {}, {}, {}, {}, array({}), {});",
         excess.join(", "),
         internal.join(", "),
         path[0],
@@ -345,6 +385,8 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
         narrow(split.depth),
         wide(split.leaning),
         narrow(split.inner_mean),
+        narrow(split.alike),
+        narrow(split.captured),
         of_direction,
         narrow(split.forward_share),
         narrow(split.g_forward),
@@ -357,6 +399,8 @@ fn constants(study: &Study) -> (Vec<f32>, String) {
         wide(through.transmitted_leaning),
         wide(through.straight_mean),
         wide(through.flat_share),
+        through.toned.map(wide).join(", "),
+        wide(through.lightest),
     );
     (film, text)
 }
@@ -396,13 +440,15 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
         let exchanged = Facing(g.mu_o, g.mu_i, g.cos_d, g.sin2_h);
         let d = brdf_study_diffuse(s, g, at_i, at_o, mean, split, depth, ways, lit);
         found[to + 9u] = d.x; found[to + 10u] = d.y; found[to + 11u] = d.z;
+        let p = toned_paper(through, front);
+        found[to + 12u] = p.x; found[to + 13u] = p.y; found[to + 14u] = p.z;
         let turned = Seen(seen.depth_b, seen.clear, seen.depth_f, seen.rho_b, seen.rho_f);
         let other = Ways(ways.capture, ways.path_o, ways.path_i);
         let e = brdf_study(
             s, exchanged, at_o, at_i, mean, split, depth, other, lit, given[at + 16u]);
         let h = btdf_study(through, turned, at_o, at_i, mean, ways.path_o, ways.path_i, s.eta);
-        found[to + 12u] = e.x; found[to + 13u] = e.y; found[to + 14u] = e.z;
-        found[to + 15u] = h.x; found[to + 16u] = h.y; found[to + 17u] = h.z;",
+        found[to + 15u] = e.x; found[to + 16u] = e.y; found[to + 17u] = e.z;
+        found[to + 18u] = h.x; found[to + 19u] = h.y; found[to + 20u] = h.z;",
         film.len(),
         literal(paper.alpha),
         literal(paper.eta),
@@ -416,6 +462,8 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
     let text = format!("{physics}\n{}", entry("f32", cases.len(), OUTPUTS, &body));
     let given = [film, cases.concat()].concat();
     let found = gpu.run(&text, &given, cases.len(), OUTPUTS);
+    let mut without_straight = study.clone();
+    without_straight.through.ballistic = DVec3::splat(1e4);
     let (mut pairs, mut ways) = (Vec::new(), Vec::new());
     for (case, found) in cases.iter().zip(found.chunks(OUTPUTS)) {
         let x = widen(case);
@@ -432,13 +480,30 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
                 .g_forward
                 .max(-study.split.phase.g_backward);
         let peak = 3.0 * UNIT_PRODUCT / (narrow * narrow);
-        for (there, back) in (0..3).chain(6..9).zip(12..OUTPUTS) {
+        for (there, back) in (0..3).chain(6..9).zip(15..OUTPUTS) {
             ways.push(Pair::new(found[back], found[there].into(), RECIPROCITY));
         }
-        for (k, &gpu) in found[..12].iter().enumerate() {
+        // The terms of a path cancel, and inks are crossed along it.
+        let terms: f64 = x[PATHS..].iter().map(|term| term.abs()).sum();
+        // So do those of an ink's depth, which is then crossed along both ways.
+        let of_depth: f64 = study
+            .film
+            .excess
+            .iter()
+            .map(|c| c.abs().max_element())
+            .sum();
+        let both = x[PATHS + 4].max(1.0) + x[PATHS + 8].max(1.0);
+        let along = UNIT_PRODUCT * (terms * deepest(&x, study) + of_depth * both);
+        // What goes straight through is taken out of all that crosses.
+        let scattered = spot(&x, paper, mean, &without_straight);
+        let crossed_terms = crossing_rounding(&x, study);
+        // The logarithm of what passes is a sum of terms that cancel.
+        let toned = toned_terms(&study.through) * UNIT_PRODUCT;
+        for (k, &gpu) in found[..15].iter().enumerate() {
             let mut pair = Pair::new(gpu, expected[k / 3][k % 3], RELATIVE);
             let diffuse = diffuse + peak * pair.cpu;
-            pair.allowed += [diffuse, 0.0, 0.0, diffuse][k / 3];
+            let through = along * scattered[k / 3][k % 3] + crossed_terms;
+            pair.allowed += [diffuse, through, through, diffuse, toned][k / 3];
             pairs.push(pair);
         }
     }
@@ -446,7 +511,7 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
         format!("{:?}, output {}", cases[i / 6], i % 6)
     })?;
     let alike = judge(name, &pairs, |i| {
-        format!("{:?}, output {}", cases[i / 12], i % 12)
+        format!("{:?}, output {}", cases[i / 15], i % 15)
     })?;
     Ok(either.max(alike))
 }

@@ -425,7 +425,7 @@ fn gouache_holds_light_back_and_thicker_gouache_more() {
         body: 0.5,
         ..Cover::default()
     };
-    let passes = passing(&cover, usual);
+    let passes = passing(&cover, usual, DVec3::ONE);
     assert!((passes - (0.25 + 0.5 * usual)).abs().max_element() < 1e-12);
 }
 
@@ -465,11 +465,15 @@ fn ink_beside_gouache_darkens_only_what_it_covers() {
     let through = DVec3::splat(0.25);
     let depth = DVec3::splat(2.0);
     let cover = |body: f64, particles: f64| Cover {
+        film: 1.0,
         body,
         particles,
         ..Cover::default()
     };
-    let all = |cover: &Cover| passing(cover, through) * (-veiled(cover, through, depth)).exp();
+    let toned = DVec3::splat(1.5);
+    let all = |cover: &Cover| {
+        passing(cover, through, toned) * (-veiled(cover, through, toned, depth)).exp()
+    };
     let half = all(&cover(0.5, 0.0)).x;
     assert!(
         (half - (0.5 * (-2.0_f64).exp() + 0.5 * 0.25)).abs() < 1e-5,
@@ -478,6 +482,18 @@ fn ink_beside_gouache_darkens_only_what_it_covers() {
     assert!((all(&cover(1.0, 0.0)).x - 0.25).abs() < 1e-5);
     assert!((all(&cover(0.0, 0.0)).x - (-2.0_f64).exp()).abs() < 1e-5);
     assert_eq!(all(&cover(0.0, 1.0)), DVec3::ZERO);
+    // Half of it ink, half of it paper that passes more, or less, than the sheet's mean.
+    for tone in [1.5, 0.4] {
+        let cover = Cover {
+            film: 0.5,
+            ..Cover::default()
+        };
+        let toned = DVec3::splat(tone);
+        let found =
+            passing(&cover, through, toned) * (-veiled(&cover, through, toned, depth)).exp();
+        let expected = 0.5 * (-2.0_f64).exp() + 0.5 * tone;
+        assert!((found.x - expected).abs() < 1e-5, "{tone}: {found}");
+    }
 }
 
 #[test]

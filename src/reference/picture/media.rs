@@ -133,14 +133,37 @@ impl Media {
         }))
     }
 
-    pub fn shares(&self, place: DVec2) -> Shares {
+    /// What lies on a place that photographs as `albedo`. `bare` and `floor` as for
+    /// [`Self::divided`].
+    ///
+    /// A map names the medium of a stroke, but a faint stroke of metal or chalk is paper between
+    /// sparse grains: of the grains there are as many as bring the photograph, with bare paper and
+    /// body colour around them, nearest to what it is.
+    pub fn shares(&self, place: DVec2, albedo: [f64; 3], bare: [f64; 3], floor: f64) -> Shares {
         let [film, body, a, b] = self.first.at(place);
         let [c, d, e, f] = self.more.as_ref().map_or([0.0; 4], |more| more.at(place));
-        Shares {
+        let mut shares = Shares {
             film,
             body,
             grains: [a, b, c, d, e, f],
+        };
+        let covered = shares.covered();
+        let of_body = self.body.map_or([0.0; 3], |body| body.albedo);
+        let (mut along, mut whole) = (0.0, 0.0);
+        for k in 0..3 {
+            let grains = self.sorts.iter().zip(shares.grains);
+            let grains: f64 = grains.map(|(sort, share)| sort.albedo[k] * share).sum();
+            let lit_body = (of_body[k] - floor).max(0.0);
+            let around = (bare[k] - floor) * (1.0 - body) + lit_body * body + floor;
+            let less = bare[k] * covered - grains;
+            along += (around - albedo[k]) * less;
+            whole += less * less;
         }
+        if whole > 1e-8 {
+            let borne_out = (along / whole).clamp(0.0, 1.0);
+            shares.grains = shares.grains.map(|share| share * borne_out);
+        }
+        shares
     }
 
     /// Divides the photograph of a place. `bare` is that of bare paper, of which the surface

@@ -218,8 +218,8 @@ impl Sheet {
         let Some(media) = &self.media else {
             return self.layered(place, self.tones.film(albedo, alpha), alpha, rng);
         };
-        let shares = media.shares(place);
         let (bare, floor) = (self.tones.bare(alpha), self.tones.floor(alpha));
+        let shares = media.shares(place, albedo, bare, floor);
         let divided = media.divided(&shares, albedo, bare, floor, rng);
         if let Some(grain) = divided.grain {
             return Spot::Grain(grain);
@@ -269,12 +269,12 @@ impl Sheet {
         let Some(media) = &self.media else {
             return self.tones.film(albedo, alpha).tau;
         };
-        let shares = media.shares(place);
+        let (bare, floor) = (self.tones.bare(alpha), self.tones.floor(alpha));
+        let shares = media.shares(place, albedo, bare, floor);
         let open = 1.0 - shares.covered();
         if open <= 0.0 || uniform(rng) * open >= shares.film {
             return [0.0; 3];
         }
-        let (bare, floor) = (self.tones.bare(alpha), self.tones.floor(alpha));
         let divided = media.divided(&shares, albedo, bare, floor, rng);
         self.tones.film(divided.paper, alpha).tau
     }
@@ -289,11 +289,16 @@ impl Sheet {
         let mut on_this = std::array::from_fn(|c| seen[c] * behind.scale[c]);
         let alpha = self.layers.alpha[1];
         if let Some(media) = &behind.media {
-            let shares = media.shares(place);
             let (bare, floor) = (self.tones.bare(alpha), self.tones.floor(alpha));
+            let shares = media.shares(place, on_this, bare, floor);
             let divided = media.divided(&shares, on_this, bare, floor, rng);
             if divided.grain.is_some() {
                 return [OPAQUE; 3];
+            }
+            // The paper's own tone is that of this side.
+            let open = 1.0 - shares.covered();
+            if uniform(rng) * open >= shares.film {
+                return [0.0; 3];
             }
             on_this = divided.paper;
         }
