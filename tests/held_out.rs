@@ -18,9 +18,10 @@ use recto::{
     shot::Darkroom,
     stage::Shown,
     tradeoff::{
-        choice::{self, Costs, LADDER},
+        choice::{self, Costs},
         errors::displayed,
-        scene::{Forecast, Maps, Sampled},
+        places::Maps,
+        scene::{Forecast, Sampled},
     },
 };
 use scenes::{Draw, Judged, draws, targets};
@@ -42,6 +43,9 @@ fn bake() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/held_out/judged.csv");
     std::fs::write(path, scenes::bake(WALKS)).expect("the findings are written");
 }
+
+/// Tiers whose predictions are held against what is measured: the ladder, and a baseline.
+const JUDGED: [Tier; 4] = [Tier::Lambert, Tier::Draft, Tier::Gallery, Tier::Study];
 
 /// A scene as it was predicted, and mean ΔE00 of each tier's frame from the judge.
 struct Outcome {
@@ -72,7 +76,7 @@ impl Outcome {
         let exhibit = Arc::new(exhibit);
         let scene = &exhibit.scenes[0];
         let targets = targets(&exhibit, scene);
-        let measured = LADDER
+        let measured = JUDGED
             .into_iter()
             .map(|tier| {
                 let aspect = f64::from(scenes::SIZE[0]) / f64::from(scenes::SIZE[1]);
@@ -99,7 +103,7 @@ impl Outcome {
         let needs = Needs::of(&exhibit, scene, Tier::Study, false);
         Self {
             name: draw.name.clone(),
-            forecasts: sampled.forecasts(),
+            forecasts: sampled.forecasts(&Tier::ALL),
             measured,
             costs: Costs::shipped(&needs.sides[0].terms),
         }
@@ -148,7 +152,7 @@ fn predictions_hold_and_the_chosen_tier_keeps_its_bound() {
         .map(|draw| Outcome::new(&mut room, &judged, draw))
         .collect();
     for outcome in &outcomes {
-        let cells: Vec<String> = LADDER
+        let cells: Vec<String> = JUDGED
             .into_iter()
             .map(|tier| {
                 let (p, m) = (outcome.predicted(tier), outcome.measured(tier));
@@ -159,7 +163,7 @@ fn predictions_hold_and_the_chosen_tier_keeps_its_bound() {
     }
     let pairs: Vec<(f64, f64)> = outcomes
         .iter()
-        .flat_map(|outcome| LADDER.map(|tier| (outcome.predicted(tier), outcome.measured(tier))))
+        .flat_map(|outcome| JUDGED.map(|tier| (outcome.predicted(tier), outcome.measured(tier))))
         .collect();
     let share = within(&pairs);
     println!(

@@ -15,6 +15,7 @@ use std::{
 };
 
 use bevy::{camera::ScalingMode, prelude::*, render::diagnostic::RenderDiagnosticsPlugin};
+use glam::{DVec2, DVec3};
 use recto::{
     cost::{Floor, FloorPlugin, least, median, sheet},
     manifest::{
@@ -22,7 +23,7 @@ use recto::{
         exhibit::{Ambient, Camera as SceneCamera, Lamp, LampKind, Scene, SideName, Surface},
     },
     optics::tier::Tier,
-    shot::Darkroom,
+    shot::{Darkroom, Picture},
     stage::{Shown, TABLE},
     units::{Degrees, Lux, Nits},
 };
@@ -32,6 +33,9 @@ const SIZE: u32 = 1024;
 const WARM_UP: usize = 4;
 const FRAMES: usize = 12;
 const ROUNDS: usize = 4;
+
+/// Of a perfect diffuser's light: the shader by hand is to draw the same picture.
+const ALIKE: f32 = 1e-3;
 
 type Anything = Box<dyn Error>;
 
@@ -124,7 +128,6 @@ fn main() -> Result<(), Anything> {
     let (exhibit, _) = Exhibit::read(&folder)?;
     let mut samples: Vec<Vec<f64>> = CASES.iter().map(|_| Vec::new()).collect();
     let mut shaded = vec![0; CASES.len()];
-    let mut by_hand = None;
     for _ in 0..ROUNDS {
         for (i, case) in CASES.iter().enumerate() {
             let tier = match case.sheet {
@@ -145,13 +148,17 @@ fn main() -> Result<(), Anything> {
             match case.sheet {
                 Sheet::Floor => Floor::lay(room.world())?,
                 Sheet::Standard => lay_standard(room.world())?,
-                Sheet::ByHand => {
-                    hand::lay(room.world())?;
-                    by_hand = Some(picture);
-                }
+                Sheet::ByHand => hand::lay(room.world())?,
                 Sheet::Tier(_) => {}
             }
             samples[i].extend(recto::cost::spans(&mut room, WARM_UP, FRAMES)?);
+            if case.sheet == Sheet::ByHand {
+                let by_hand = room.take(shown, [SIZE, SIZE])?;
+                let off = difference(&by_hand, &picture);
+                if off > ALIKE {
+                    return Err(format!("the shader by hand differs by {off}").into());
+                }
+            }
         }
     }
     println!("{} at {SIZE}²", folder.display());
@@ -175,6 +182,15 @@ fn main() -> Result<(), Anything> {
         );
     }
     first_picture(&folder)
+}
+
+/// The largest difference of a channel.
+fn difference(a: &Picture, b: &Picture) -> f32 {
+    let channels = |picture: &Picture| picture.pixels.clone().into_iter().flatten();
+    channels(a)
+        .zip(channels(b))
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f32::max)
 }
 
 impl Setting {

@@ -12,7 +12,8 @@ use crate::{
     optics::tier::Tier,
     tradeoff::{
         choice::{self, Costs, LADDER},
-        scene::{MapFault, Maps, Sampled, WIDTH_PX, is_flattened},
+        places::{MapFault, Maps},
+        scene::{Sampled, WIDTH_PX, is_flattened},
         table::Table,
     },
 };
@@ -53,6 +54,15 @@ impl Prices {
             Err(error) => shipped(format!("as they could not be measured here: {error}")),
         }
     }
+}
+
+/// How much is asked: predictions take a second for a scene with large lamps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// The tiers that may be chosen.
+    Choice,
+    /// The baselines too, and what each part of the model is worth.
+    Whole,
 }
 
 /// Of one scene.
@@ -102,10 +112,15 @@ impl SceneAccuracy {
         exhibit: &Exhibit,
         scene: &Scene,
         prices: &Prices,
+        detail: Detail,
         maps: &mut Maps,
     ) -> Result<Self, MapFault> {
         let sampled = Sampled::new(exhibit, scene, [WIDTH_PX, HEIGHT_PX], maps)?;
-        let forecasts = sampled.forecasts();
+        let (tiers, worths) = match detail {
+            Detail::Choice => (&LADDER[..], Vec::new()),
+            Detail::Whole => (&Tier::ALL[..], sampled.worths()),
+        };
+        let forecasts = sampled.forecasts(tiers);
         let needs = Needs::of(exhibit, scene, Tier::Study, false);
         let costs = needs
             .sides
@@ -137,8 +152,7 @@ impl SceneAccuracy {
                     cost: costs.get(forecast.tier).map(|cost| cost.ratio),
                 })
                 .collect(),
-            parts: sampled
-                .worths()
+            parts: worths
                 .iter()
                 .map(|worth| PartReport {
                     what: worth.aspect.name(),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{
     Failure,
-    accuracy::Prices,
+    accuracy::{Detail, Prices},
     output,
     report::{PhotographReport, Refused, Report},
 };
@@ -80,7 +80,12 @@ fn report(arguments: &Arguments) -> Result<(Report, Vec<(String, Mask)>), Faults
             masks.push((photograph.name(), mask));
         }
     }
-    let report = Report::new(&exhibit, warnings, photographs, &Prices::here())?;
+    let detail = if arguments.explain || arguments.json {
+        Detail::Whole
+    } else {
+        Detail::Choice
+    };
+    let report = Report::new(&exhibit, warnings, photographs, &Prices::here(), detail)?;
     Ok((report, masks))
 }
 

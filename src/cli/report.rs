@@ -11,7 +11,7 @@ use std::{
 use glam::DVec3;
 use serde::Serialize;
 
-use super::accuracy::{Prices, SceneAccuracy};
+use super::accuracy::{Detail, Prices, SceneAccuracy};
 use crate::{
     colour,
     manifest::{
@@ -22,7 +22,7 @@ use crate::{
     },
     needs::Needs,
     optics::tier::Tier,
-    tradeoff::scene::Maps,
+    tradeoff::places::Maps,
 };
 
 /// The tier that requirements are told for, which is the one used where none is asked for.
@@ -159,12 +159,13 @@ impl Report {
         warnings: Vec<Fault>,
         photographs: Vec<PhotographReport>,
         prices: &Prices,
+        detail: Detail,
     ) -> Result<Self, Faults> {
         let mut maps = Maps::default();
         let scenes: Result<Vec<SceneReport>, Faults> = exhibit
             .scenes
             .iter()
-            .map(|scene| SceneReport::new(exhibit, scene, prices, &mut maps))
+            .map(|scene| SceneReport::new(exhibit, scene, prices, detail, &mut maps))
             .collect();
         let Accuracy {
             max_delta_e,
@@ -195,9 +196,10 @@ impl SceneReport {
         exhibit: &Exhibit,
         scene: &Scene,
         prices: &Prices,
+        detail: Detail,
         held: &mut Maps,
     ) -> Result<Self, Faults> {
-        let accuracy = SceneAccuracy::new(exhibit, scene, prices, held)
+        let accuracy = SceneAccuracy::new(exhibit, scene, prices, detail, held)
             .map_err(|fault| exhibit.map_fault(&fault.path, &fault.error))?;
         let needs = Needs::of(exhibit, scene, TIER, false);
         let maps = needs.sides.iter().flat_map(|side| {

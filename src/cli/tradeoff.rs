@@ -15,8 +15,9 @@ use crate::{
     optics::tier::Tier,
     stage::{Shown, legend},
     tradeoff::{
+        places::Maps,
         plot,
-        scene::{Maps, Sampled, WIDTH_PX},
+        scene::{Sampled, WIDTH_PX},
         table::{Cost, Row, Table},
     },
 };
@@ -80,7 +81,7 @@ fn of_scenes(exhibit: Exhibit) -> Result<Table, Failure> {
             .map_err(|fault| exhibit.map_fault(&fault.path, &fault.error))
             .map_err(Faults::from)?;
         let costs = scene_costs(&exhibit, scene, &mut watch)?;
-        for forecast in sampled.forecasts() {
+        for forecast in sampled.forecasts(&Tier::ALL) {
             let tier = forecast.tier;
             let needs = Needs::of(&exhibit, scene, tier, false);
             let side = needs.sides.first();

@@ -7,6 +7,7 @@
 //! | tiers against it | [`errors`] |
 //! | all of it as CSV, and the table that is part of the program | [`table`] |
 //! | what study errs by between the subjects | [`correction`] |
+//! | what lies at each place of a side | [`places`] |
 //! | tiers on a scene, predicted | [`scene`] |
 //! | the tier for a scene, at rest and in motion | [`choice`] |
 //! | the picture of the table | [`plot`] |
@@ -17,6 +18,7 @@ pub mod choice;
 pub mod correction;
 pub mod errors;
 pub mod judged;
+pub mod places;
 pub mod plot;
 pub mod scene;
 pub mod subject;

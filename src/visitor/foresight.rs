@@ -12,7 +12,7 @@ use crate::{
     stage::{Arranged, Shown, Waker},
     tradeoff::{
         choice::{LADDER, Outlook},
-        scene::Maps,
+        places::Maps,
         table::Table,
     },
 };
