@@ -18,8 +18,10 @@ use crate::{
     },
     sheet::{
         PAPER_BASELINES, PAPER_BSDF, PAPER_MEDIA,
-        rows::{MeanUniform, RowUniform, narrow_paths},
-        uniform::{FilmUniform, ParticleUniform, SplitUniform, ThroughUniform},
+        uniform::{
+            FilmUniform, MeanUniform, ParticleUniform, RowUniform, SplitUniform, ThroughUniform,
+            narrow_paths,
+        },
     },
 };
 

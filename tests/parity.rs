@@ -25,7 +25,10 @@ use recto::{
         },
         tier::{Facing, Surface, brdf_draft, brdf_gallery, brdf_lambert, capture_floor, facing},
     },
-    sheet::{PAPER_BSDF, rows::RowUniform, uniform::LightUniform},
+    sheet::{
+        PAPER_BSDF,
+        uniform::{LightUniform, RowUniform},
+    },
 };
 
 #[path = "parity/baselines.rs"]

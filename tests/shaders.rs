@@ -25,10 +25,9 @@ use recto::{
     },
     sheet::{
         PAPER_BASELINES, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA,
-        rows::{MeanUniform, RowUniform},
         uniform::{
-            FilmUniform, LightUniform, MapPlace, MediaUniform, PaperUniform, ParticleUniform,
-            SplitUniform, ThroughUniform,
+            FilmUniform, LightUniform, MapPlace, MeanUniform, MediaUniform, PaperUniform,
+            ParticleUniform, RowUniform, SplitUniform, ThroughUniform,
         },
     },
 };

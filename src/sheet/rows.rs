@@ -9,14 +9,14 @@
 use bevy::{
     asset::RenderAssetUsages,
     image::Image,
-    render::render_resource::{Extent3d, ShaderType, TextureDimension, TextureFormat},
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 use glam::{DVec4, Vec2, Vec4};
 
 use crate::optics::{
     ink::capture_path,
-    refraction::{PATH_TERMS, PathRow, PathTable},
-    table::{ALPHA_FIT_MIN, InterfaceMean, InterfaceRow, InterfaceTable, LATE_TERMS, MU_TERMS},
+    refraction::{PATH_TERMS, PathTable},
+    table::{ALPHA_FIT_MIN, InterfaceRow, InterfaceTable},
 };
 
 /// Rows over √α.
@@ -25,49 +25,6 @@ const ROWS: usize = 1024;
 /// P_c; P.
 const INTERFACE_TEXELS: usize = 5;
 const TEXELS: usize = INTERFACE_TEXELS + 1 + PATH_TERMS;
-
-/// Twin of `InterfaceMean`.
-#[derive(Clone, Copy, Debug, Default, ShaderType)]
-pub struct MeanUniform {
-    pub compensation: f32,
-    pub t_mean: f32,
-    pub capture: f32,
-    pub floor: f32,
-}
-
-impl MeanUniform {
-    /// Narrows `mean`.
-    pub fn new(mean: &InterfaceMean) -> Self {
-        Self {
-            compensation: mean.compensation as f32,
-            t_mean: mean.t_mean as f32,
-            capture: mean.capture as f32,
-            floor: mean.floor as f32,
-        }
-    }
-}
-
-/// Twin of `InterfaceRow`, for storage buffers.
-#[derive(Clone, Copy, Debug, Default, ShaderType)]
-pub struct RowUniform {
-    pub t: [f32; MU_TERMS],
-    pub late: [f32; LATE_TERMS],
-}
-
-impl RowUniform {
-    /// Narrows `row`.
-    pub fn new(row: &InterfaceRow) -> Self {
-        Self {
-            t: row.t.map(|c| c as f32),
-            late: row.late.map(|c| c as f32),
-        }
-    }
-}
-
-/// Narrows a row of paths.
-pub fn narrow_paths(row: &PathRow) -> [Vec4; PATH_TERMS] {
-    row.map(|term| term.as_vec4())
-}
 
 /// The rows of one side.
 pub struct Rows {
@@ -155,7 +112,7 @@ fn texels(interface: &InterfaceTable, paths: Option<&PathTable>, alpha: f64) -> 
 mod tests {
     use super::*;
     use crate::optics::{
-        refraction::path_at,
+        refraction::{PathRow, path_at},
         table::{fit_root, interface_at},
     };
 

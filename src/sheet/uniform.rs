@@ -13,7 +13,9 @@ use crate::{
         ink::{FILM_TERMS, Film},
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
         quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
+        refraction::{PATH_TERMS, PathRow},
         study::{Split, Study, TONE_TERMS, Through},
+        table::{InterfaceMean, InterfaceRow, LATE_TERMS, MU_TERMS},
     },
 };
 pub use media::{MediaUniform, ParticleUniform};
@@ -161,6 +163,49 @@ impl MapPlace {
             ..Self::new(uv_from_side)
         }
     }
+}
+
+/// Twin of `InterfaceMean`.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct MeanUniform {
+    pub compensation: f32,
+    pub t_mean: f32,
+    pub capture: f32,
+    pub floor: f32,
+}
+
+impl MeanUniform {
+    /// Narrows `mean`.
+    pub fn new(mean: &InterfaceMean) -> Self {
+        Self {
+            compensation: mean.compensation as f32,
+            t_mean: mean.t_mean as f32,
+            capture: mean.capture as f32,
+            floor: mean.floor as f32,
+        }
+    }
+}
+
+/// Twin of `InterfaceRow`, for storage buffers.
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
+pub struct RowUniform {
+    pub t: [f32; MU_TERMS],
+    pub late: [f32; LATE_TERMS],
+}
+
+impl RowUniform {
+    /// Narrows `row`.
+    pub fn new(row: &InterfaceRow) -> Self {
+        Self {
+            t: row.t.map(|c| c as f32),
+            late: row.late.map(|c| c as f32),
+        }
+    }
+}
+
+/// Narrows a row of paths.
+pub fn narrow_paths(row: &PathRow) -> [Vec4; PATH_TERMS] {
+    row.map(|term| term.as_vec4())
 }
 
 /// Twin of `Film`.

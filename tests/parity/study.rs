@@ -15,10 +15,7 @@ use recto::{
         },
         tier::albedo_of,
     },
-    sheet::{
-        rows::narrow_paths,
-        uniform::{FilmUniform, SplitUniform, ThroughUniform},
-    },
+    sheet::uniform::{FilmUniform, SplitUniform, ThroughUniform, narrow_paths},
 };
 
 pub fn conductors() -> Twins {
