@@ -319,7 +319,7 @@ struct Through {
     lightest: vec3<f32>,
 }
 
-const TONE_MIN: f32 = 0.2;
+const TONE_MIN: f32 = 0.1;
 const DIFFUSE_COSINE: f32 = 0.66666666666667;
 const LOST_DEPTH: f32 = 0.16666666666667;
 
@@ -376,6 +376,13 @@ fn split_shape(
         + lost * (m_i + m_o - split.captured);
     let shape = 1.0 + split.kappa * once + split.leaning * slanted + split.alike * alike;
     return max(shape, vec3(0.0)) * split.at_capture;
+}
+
+fn split_even(split: Split, m_o: f32, depth: vec3<f32>) -> vec3<f32> {
+    let lost = depth / (depth + LOST_DEPTH) * (split.inner_mean - DIFFUSE_COSINE);
+    let alike = lost * (split.inner_mean + m_o - split.captured);
+    let slanted = split.inner_mean - m_o;
+    return max(1.0 + split.leaning * slanted + split.alike * alike, vec3(0.0)) * split.at_capture;
 }
 
 struct Ways {

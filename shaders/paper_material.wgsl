@@ -10,7 +10,7 @@
     brdf_study_diffuse, btdf_study, capture_floor, facing, fit_root, fresnel_dielectric,
     ies_angles, interface_at, internal_reflectance, light_disc,
     light_distant, light_ies, light_punctual, light_rectangle, mean_inner_cosine, mean_length,
-    optical_depth, path_at, through_study, toned_paper, widened,
+    optical_depth, path_at, split_even, through_study, toned_paper, widened,
 }
 #import "embedded://recto/paper_media.wgsl"::{
     CAPTURE_COS_D, SHEEN_MEAN,
@@ -65,12 +65,12 @@ struct MapPlace {
     lit: f32,
 }
 
-// What lies on both sides, and the lobes of paper that are off by default.
 #ifdef PARTICLES
 // Sorts of particles: a constant, so that what is done for each is written out.
 const SORTS: u32 = #{SORTS}u;
 #endif
 
+// What lies on both sides, and the lobes of paper that are off by default.
 struct Media {
     particles: array<Particle, 6>,
     body_albedo: vec3<f32>,
@@ -617,9 +617,11 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
 #endif
 #ifdef PATHS
-    let paths = path_row(y);
-    let path_n = path_index(y);
-    let capture = capture_path(y);
+    // Films lie under the facets as they are, combed or not.
+    let y_films = row_of(alpha);
+    let paths = path_row(y_films);
+    let path_n = path_index(y_films);
+    let capture = capture_path(y_films);
     let path_o = path_at(paths, dot(n, v), path_n);
 #endif
 #ifdef TIER_STUDY
@@ -900,10 +902,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef COUPLED
     var diffuse = paper_albedo * (at_o.t * mean.t_mean * mean.capture);
 #ifdef TIER_STUDY
-    // Light from everywhere comes in along its mean path.
-    let leaning = paper.split.leaning * (paper.split.inner_mean - mean_inner_cosine(path_o));
     diffuse *= beyond_capture(depth, capture, paper.film.diffuse_path, path_o)
-        * (max(1.0 + leaning, vec3(0.0)) * paper.split.at_capture);
+        * split_even(paper.split, mean_inner_cosine(path_o), depth);
 #ifdef BODY
     diffuse += shares.body * (at_o.t * mean.t_mean * mean.capture);
 #endif

@@ -113,18 +113,17 @@ fn brdf_body(
 
 fn passing(cover: Cover, body_through: vec3<f32>, toned: vec3<f32>) -> vec3<f32> {
     let uncovered = max(1.0 - cover.particles - cover.body, 0.0);
-    let lighter = max(toned - 1.0, vec3(0.0)) * (1.0 - cover.film);
-    return uncovered * (1.0 + lighter) + body_through * cover.body;
+    return uncovered * (cover.film + toned * (1.0 - cover.film)) + body_through * cover.body;
 }
 
 fn veiled(
     cover: Cover, body_through: vec3<f32>, toned: vec3<f32>, depth: vec3<f32>,
 ) -> vec3<f32> {
     let uncovered = max(1.0 - cover.particles - cover.body, 0.0);
-    let open = exp(-depth) * cover.film + toned * (1.0 - cover.film);
-    let passes = uncovered * open + body_through * cover.body + 1e-6;
-    let all = passing(cover, body_through, toned) + 1e-6;
-    return max(-log(passes / all), vec3(0.0));
+    let beside = uncovered * toned * (1.0 - cover.film) + body_through * cover.body + 1e-6;
+    let inked = uncovered * cover.film;
+    let passes = inked * exp(-depth) + beside;
+    return max(-log(passes / (inked + beside)), vec3(0.0));
 }
 
 fn interface_of(at: Interface, reflects: f32) -> Interface {

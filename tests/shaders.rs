@@ -191,8 +191,7 @@ const CPU_ONLY: [&str; 7] = [
     "stretch",
     "ways_back",
 ];
-/// The shader has one layout for lamps of every shape and keeps an interface's row for a whole
-/// pixel: these stand for a method, `Light::at`.
+/// The shader has one layout for lamps of every shape: these stand for a method, `Light::at`.
 const GPU_ONLY: [&str; 7] = [
     "angle_of",
     "ies_angles",

@@ -1,5 +1,5 @@
 // The study tier written by hand for one scene: a flat side with a picture and nothing else, one
-// distant lamp, a parallel eye. What src/shaders would draw costs as much as this where terms
+// distant lamp, a parallel eye. What the glue compiles to costs as much as this where terms
 // that a scene does not need cost nothing.
 
 #import "embedded://recto/paper_bsdf.wgsl"::{

@@ -171,7 +171,8 @@ impl Specimen {
         self.study.film.paths.at(mu, self.surface.alpha)
     }
 
-    fn shares(&self) -> Shares {
+    /// The photograph of the spot, divided.
+    pub fn shares(&self) -> Shares {
         let mean = self.interface.mean_at(self.surface.alpha);
         let (bare, body) = (self.study.bare, self.body_albedo);
         shares_of(&self.surface, &mean, bare, body, &self.cover)

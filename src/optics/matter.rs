@@ -192,24 +192,22 @@ pub fn brdf_body(body: DVec3, at_i: &Interface, at_o: &Interface, mean: &Interfa
     body * (at_i.t * at_o.t * mean.capture / PI)
 }
 
-/// Share of the light through bare paper that gets through a spot: `body_through` is what body
-/// colour lets through, `toned` what paper without ink does (see
-/// [`toned_paper`](super::study::toned_paper)), where it is more than the sheet's mean.
+/// Share of the light through bare paper that gets through a spot without ink: `body_through` is
+/// what body colour lets through, `toned` what paper does where no ink lies (see
+/// [`toned_paper`](super::study::toned_paper)).
 pub fn passing(cover: &Cover, body_through: DVec3, toned: DVec3) -> DVec3 {
     let uncovered = (1.0 - cover.particles - cover.body).max(0.0);
-    let lighter = (toned - 1.0).max(DVec3::ZERO) * (1.0 - cover.film);
-    uncovered * (1.0 + lighter) + body_through * cover.body
+    uncovered * (cover.film + toned * (1.0 - cover.film)) + body_through * cover.body
 }
 
 /// τ of an even film through which, along the normal, as much light passes as through ink of
-/// `depth`, `toned` paper without ink and body colour, side by side: [`passing`] is to be
-/// multiplied.
+/// `depth` beside paper and body colour, which have none: [`passing`] is to be multiplied.
 pub fn veiled(cover: &Cover, body_through: DVec3, toned: DVec3, depth: DVec3) -> DVec3 {
     let uncovered = (1.0 - cover.particles - cover.body).max(0.0);
-    let open = (-depth).exp() * cover.film + toned * (1.0 - cover.film);
-    let passes = uncovered * open + body_through * cover.body + 1e-6;
-    let all = passing(cover, body_through, toned) + 1e-6;
-    (-(passes / all).map(f64::ln)).max(DVec3::ZERO)
+    let beside = uncovered * toned * (1.0 - cover.film) + body_through * cover.body + 1e-6;
+    let inked = uncovered * cover.film;
+    let passes = inked * (-depth).exp() + beside;
+    (-(passes / (inked + beside)).map(f64::ln)).max(DVec3::ZERO)
 }
 
 /// An interface that reflects `reflects` times as much as the tabulated one, for another index.

@@ -72,10 +72,12 @@ impl PathTable {
     /// For an interface of index `n` (≥ 1), for every roughness from [`ALPHA_FIT_MIN`] on.
     pub fn new(n: f64) -> Arc<Self> {
         // A table is whole or not there: nothing is left half done where a thread panicked.
-        let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(table) = made.iter().find(|table| table.n == n) {
+        let made = || MADE.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(table) = made().iter().find(|table| table.n == n) {
             return Arc::clone(table);
         }
+        // Nothing is locked meanwhile: a thread that waits for others may be given work that asks
+        // for a table too.
         let low = ALPHA_FIT_MIN.sqrt();
         let root = |u: f64| low + (1.0 - low) * u;
         let rows = chebyshev::<FIT_ALPHA>().map(|u| row_at(root(u).powi(2), n));
@@ -89,6 +91,7 @@ impl PathTable {
             std::array::from_fn(|i| DVec4::from_array(over_w.map(|over_s| over_s[i])))
         });
         let table = Arc::new(Self { n, terms });
+        let mut made = made();
         if made.len() >= KEPT {
             made.remove(0);
         }

@@ -9,10 +9,10 @@ use super::{
     bsdf::Specimen,
     ink::{beyond_capture, internal_reflectance, optical_depth},
     lamp::{Incidence, Light, Shape},
-    matter::{passing, veiled},
+    matter::{passing, uncovered_share, veiled},
     microfacet::MU_MIN,
     refraction::mean_inner_cosine,
-    study::{Seen, through_study, toned_paper},
+    study::{Seen, split_even, through_study, toned_paper},
     tier::{Surface, Tier, albedo_of, brdf_lambert},
 };
 
@@ -102,11 +102,8 @@ impl Spot {
         if tier == Tier::Study {
             let (capture, path_o) = (self.specimen.capture(), self.specimen.path(mu_o));
             let depth = self.specimen.depth();
-            let split = &study.split;
-            // Light from everywhere comes in along its mean path.
-            let leaning = split.leaning * (split.inner_mean - mean_inner_cosine(path_o));
             diffuse *= beyond_capture(depth, capture, study.film.diffuse_path, path_o)
-                * ((1.0 + leaning).max(DVec3::ZERO) * split.at_capture);
+                * split_even(&study.split, mean_inner_cosine(path_o), depth);
         }
         diffuse + (1.0 - at_o.t)
     }
@@ -142,6 +139,8 @@ impl Spot {
         );
         let (cover, body_through) = (&self.specimen.cover, self.specimen.body_through);
         let (seen, baked) = if tier == Tier::Study {
+            // Of what is neither grain nor body colour.
+            let share_f = uncovered_share(&self.specimen.shares(), study.bare);
             let toned = toned_paper(&study.through, share_f);
             let darkness = optical_depth(film, capture, share_f);
             let seen = Seen {

@@ -2,7 +2,7 @@
 //! calibrated by the photograph. Particles and body colour are in [`super::matter`].
 
 use std::{
-    f64::consts::{FRAC_1_SQRT_2, PI},
+    f64::consts::{FRAC_1_SQRT_2, FRAC_PI_8, PI},
     sync::Arc,
 };
 
@@ -30,7 +30,7 @@ pub struct Study {
 /// How the paper's diffuse light differs from one direction to another. Light scattered once
 /// stands against its mean over all directions, and what enters at a slant is sent back sooner,
 /// so that less of it crosses the sheet. The means of both over either direction are those of
-/// diffusion, so that no light is made or lost.
+/// diffusion, so that no light is made or lost. Light that enters steeply leaves a little more steeply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
     /// κ = ωπ(1 − r_i R_b)/R_b: a single scatter's share of what the paper sends back, over
@@ -178,13 +178,14 @@ fn per_channel(slabs: &[Slab; 3], of: impl Fn(&Slab) -> f64) -> DVec3 {
     DVec3::from_array(slabs.each_ref().map(of))
 }
 
-/// Of the bare paper's albedo: darker paper passes as little, a hundredth at most.
-pub const TONE_MIN: f64 = 0.2;
+/// Of the bare paper's albedo: darker paper passes as little, a twentieth at most.
+pub const TONE_MIN: f64 = 0.1;
 /// Of the bare paper's albedo: no paper has lighter spots.
 const TONE_MAX: f64 = 1.5;
 /// Coefficients of what toned paper passes.
 pub const TONE_TERMS: usize = 4;
-/// τ of ink at which half of what the boundary sends back does not come again.
+/// τ of ink at which half of what the boundary sends back does not come again: ρ(1/6) is .49 of
+/// ρ(0) (n = 1.5).
 pub const LOST_DEPTH: f64 = 1.0 / 6.0;
 /// Mean cosine of diffuse light within.
 pub const DIFFUSE_COSINE: f64 = 2.0 / 3.0;
@@ -303,8 +304,8 @@ impl Split {
         let at_capture = Facing {
             mu_i: FRAC_1_SQRT_2,
             mu_o: 1.0,
-            cos_d: 1.0,
-            sin2_h: 0.0,
+            cos_d: FRAC_PI_8.cos(),
+            sin2_h: FRAC_PI_8.sin().powi(2),
         };
         let shape = split_shape(
             &split,
@@ -486,11 +487,20 @@ pub fn toned_paper(through: &Through, share: DVec3) -> DVec3 {
     (((c[3] * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0]).exp()
 }
 
+/// The same of even light, which comes in along its mean path, `m_o` the mean cosine within
+/// towards the eye.
+pub fn split_even(split: &Split, m_o: f64, depth: DVec3) -> DVec3 {
+    let lost = depth / (depth + LOST_DEPTH) * (split.inner_mean - DIFFUSE_COSINE);
+    let alike = lost * (split.inner_mean + m_o - split.captured);
+    let slanted = split.inner_mean - m_o;
+    (1.0 + split.leaning * slanted + split.alike * alike).max(DVec3::ZERO) * split.at_capture
+}
+
 impl Through {
     /// Sets what toned paper passes, by what all of a sheet `passes` whose albedo is a share of
     /// the bare paper's; `lightest` is the share of paper that absorbs nothing.
     fn tone(&mut self, lightest: DVec3, passes: impl Fn(DVec3) -> DVec3) {
-        const NODES: [f64; TONE_TERMS] = [1.0, 0.8, 0.55, 0.3];
+        const NODES: [f64; TONE_TERMS] = [1.0, 0.8, 0.5, 0.15];
         self.lightest = lightest.clamp(DVec3::splat(TONE_MIN), DVec3::splat(TONE_MAX));
         let light = self.lightest.min(DVec3::ONE);
         let bare = passes(DVec3::ONE).max(DVec3::splat(1e-30));

@@ -45,7 +45,7 @@ pub type AlphaPolynomial = [f64; ALPHA_TERMS];
 pub struct InterfaceTable {
     /// Coefficients of [`Interface::t`], from x⁰ upwards.
     pub t: [AlphaPolynomial; MU_TERMS],
-    /// Coefficients of [`Interface::lost`], from x⁰ upwards.
+    /// Coefficients of [`Interface::late`], from x⁰ upwards.
     pub late: [AlphaPolynomial; LATE_TERMS],
     pub compensation: AlphaPolynomial,
     pub t_mean: AlphaPolynomial,

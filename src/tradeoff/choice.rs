@@ -51,7 +51,7 @@ impl Costs {
     }
 }
 
-/// What is to be expected of every tier in a scene.
+/// What is to be expected of every tier of the ladder in a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outlook {
     pub forecasts: Vec<Forecast>,

@@ -16,7 +16,7 @@ use crate::{
     optics::{
         bsdf::Specimen,
         lamp::Light,
-        matter::{Cover, Media, Particle},
+        matter::{Cover, Media, Particle, borne_out, with_borne},
         microfacet::ALPHA_MIN,
         refraction::PathTable,
         relief::{Horizon, mean_length, rise_of, widened},
@@ -204,6 +204,9 @@ impl<'m> Sheet<'m> {
         let mean = self.interface.mean_at(surface.alpha);
         let share = albedo_of(&surface, &mean) / self.study.bare;
         let (cover, particle) = self.cover(on_side, width);
+        let (bare, body) = (self.study.bare, self.media.body_albedo);
+        let borne = borne_out(&surface, &mean, bare, body, &cover);
+        let cover = with_borne(&cover, borne);
         let spot = Spot {
             specimen: Specimen {
                 surface,

@@ -32,6 +32,7 @@ const PLACES: [u32; 2] = [24, 18];
 pub const WIDTH_PX: u32 = 1920;
 /// A place that is less sheet than this belongs to the table.
 const SHEET: f64 = 0.5;
+
 /// What a tier is predicted to do with a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {

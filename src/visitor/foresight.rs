@@ -82,7 +82,8 @@ impl Foresight {
         let scene = shown.scene.clone();
         self.asked = Some((exhibit.clone(), scene.clone()));
         let (sender, maps, table) = (self.sender.clone(), self.maps.clone(), self.table.clone());
-        rayon::spawn(move || {
+        // Not among rayon's threads: the forecast waits for these while it holds the maps.
+        std::thread::spawn(move || {
             // A panic elsewhere leaves whole maps behind.
             let mut maps = maps.lock().unwrap_or_else(PoisonError::into_inner);
             // A map that cannot be read is told by the stage; there is nothing to predict then.

@@ -17,8 +17,8 @@ use recto::{
         relief::{SHORTENING_NOISE, march_reach, mean_length, rise_of, slope_variance, widened},
         slab::Phase,
         study::{
-            Seen, Split, Through, crossing, phase_function, phase_lobe, single_scatter, split_mean,
-            split_shape,
+            Seen, Split, Through, crossing, phase_function, phase_lobe, single_scatter, split_even,
+            split_mean, split_shape,
         },
         table::InterfaceTable,
         tier::{albedo_of, brdf_gallery_specular},
@@ -286,12 +286,15 @@ fn split_of(x: &[f64]) -> Split {
 /// ends, slabs from a film of next to nothing on.
 fn scattering() -> Twins {
     Twins {
-        name: "phase_lobe, phase_function, single_scatter, split_mean, split_shape",
+        name: "phase_lobe, phase_function, single_scatter, split_mean, split_shape, split_even",
         body: format!(
             "let split = Split({}, given[at + 3u], {}, given[at + 7u], {}, given[at + 22u],
                 given[at + 8u], given[at + 19u] + given[at + 20u], vec4({}, given[at + 26u]), given[at + 8u], given[at + 9u], given[at + 10u]);
             let g = Facing(given[at + 11u], given[at + 12u], given[at + 13u], 0.0);
             {} found[to + 6u] = split_mean(split, g.mu_i);
+            let depth = vec3(given[at + 7u], given[at + 18u], 0.0);
+            let even = split_even(split, given[at + 15u], depth);
+            found[to + 7u] = even.x; found[to + 8u] = even.y; found[to + 9u] = even.z;
             found[to + 3u] = phase_lobe(split.g_forward, given[at + 17u]);
             found[to + 4u] = phase_function(split, given[at + 17u]);
             found[to + 5u] = single_scatter(split, given[at + 16u], g, given[at + 14u], given[at + 15u]);",
@@ -320,7 +323,8 @@ fn scattering() -> Twins {
                 single_scatter(&split, x[16], &g, x[14], x[15]),
                 split_mean(&split, x[11]),
             ];
-            [&shape[..], &others].concat()
+            let even = split_even(&split, x[15], depth).to_array();
+            [&shape[..], &others, &even].concat()
         },
         relative: |_| RELATIVE,
         cases: cases(22, |seeded| {
@@ -374,7 +378,7 @@ fn scattering() -> Twins {
 
 /// The narrowest lobes are (1 − |g|)² wide, which the rounding of a cosine reaches; a shape is a
 /// difference of κq and κq̄.
-fn scattering_rounding(x: &[f64]) -> [f64; 7] {
+fn scattering_rounding(x: &[f64]) -> [f64; 10] {
     let split = split_of(x);
     let narrow = |g: f64| (1.0 - g.abs()).powi(2).max(1e-6);
     let phase = split.phase;
@@ -388,7 +392,8 @@ fn scattering_rounding(x: &[f64]) -> [f64; 7] {
     };
     let means = x[18] + x[3] + 2.0 * split.of_direction.element_sum();
     let slanted = 2.0 * x[22] + x[14] + x[15];
-    let terms = 1.0 + split.kappa * means + split.leaning * slanted;
+    let alike = split.alike * (slanted * slanted + split.captured);
+    let terms = 1.0 + split.kappa * means + split.leaning * slanted + alike;
     let shape = (terms * split.at_capture).max_element() * UNIT_PRODUCT;
     [
         shape,
@@ -398,6 +403,9 @@ fn scattering_rounding(x: &[f64]) -> [f64; 7] {
         both * phase_function(&split, x[17]),
         both * single_scatter(&split, x[16], &g, x[14], x[15]),
         0.0,
+        shape,
+        shape,
+        shape,
     ]
 }
 

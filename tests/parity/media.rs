@@ -477,8 +477,8 @@ fn broken_media_are_found() {
         (
             divided(),
             rounding_of_albedos,
-            "exp(-depth) * cover.film",
-            "uncovered",
+            "inked * exp(-depth)",
+            "inked",
         ),
         (divided(), rounding_of_albedos, "* cover.film;", "* 1.0;"),
         (

@@ -325,17 +325,13 @@ fn deepest(x: &[f64], study: &Study) -> f64 {
     depth(8).max(depth(11)).max(straight)
 }
 
-/// The largest that the terms of [`toned_paper`]'s logarithm add up to, times what it makes of
-/// the light.
+/// The largest that the terms of [`toned_paper`]'s logarithm add up to before they cancel.
 fn toned_terms(through: &Through) -> f64 {
     let ln_x = TONE_MIN.ln().abs();
     let terms = through.toned.iter().rev();
     let sum = terms.fold(DVec3::ZERO, |sum, c| sum * ln_x + c.abs());
-    let most = toned_paper(through, through.lightest)
-        .max_element()
-        .max(1.0);
     // What it is made of is narrowed, and so is the logarithm itself.
-    2.0 * sum.max_element() * most
+    2.0 * sum.max_element()
 }
 
 fn literal(value: f64) -> String {
@@ -500,6 +496,7 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
             let mut pair = Pair::new(gpu, expected[k / 3][k % 3], RELATIVE);
             let diffuse = diffuse + peak * pair.cpu;
             let through = along * scattered[k / 3][k % 3] + crossed_terms;
+            let toned = toned * pair.cpu;
             pair.allowed += [diffuse, through, through, diffuse, toned][k / 3];
             pairs.push(pair);
         }
@@ -530,9 +527,14 @@ fn a_broken_study_is_found() {
         ),
         ("- t * t * rho_f * rho_b", "+ t * t * rho_f * rho_b"),
         ("(1.0 - g * g) / (d * sqrt(d))", "(1.0 - g * g) / d"),
+        ("+ split.alike * alike", "- split.alike * alike"),
+        ("lost * (m_i + m_o - split.captured)", "lost * (m_i + m_o)"),
+        ("clamp(share, vec3(TONE_MIN), through.lightest)", "share"),
     ] {
         let physics = broken(sound, wrong);
         let outcome = compare_study(&gpu, &physics, 0);
         assert!(outcome.is_err(), "{wrong} passed: {outcome:?}");
     }
+    let physics = broken("return sum / smooth_cosine(mu, n);", "return sum;");
+    assert!(compare_paths(&gpu, &physics).is_err());
 }

@@ -494,6 +494,11 @@ fn ink_beside_gouache_darkens_only_what_it_covers() {
         let expected = 0.5 * (-2.0_f64).exp() + 0.5 * tone;
         assert!((found.x - expected).abs() < 1e-5, "{tone}: {found}");
     }
+    // Paper alone has no depth: it is as dark at a slant as from above.
+    let paper = Cover::default();
+    let toned = DVec3::splat(0.3);
+    assert!(veiled(&paper, through, toned, depth).max_element() < 1e-5);
+    assert_eq!(passing(&paper, through, toned), toned);
 }
 
 #[test]
