@@ -82,7 +82,12 @@ impl Slab {
     ///
     /// Diffusion between extrapolated boundaries with the source one transport mean free path
     /// along that light: the closed form of the sum over image dipoles (Donner & Jensen 2005,
-    /// eq. 11 and 12). In a slab thinner than that the source lies at its far side.
+    /// eq. 11 and 12). In a slab thinner than that the source lies at its far side. What comes
+    /// through has decayed less fast than diffusion's √(3σaσt′) says where absorption is strong: by
+    /// the next term of the transport equation's own length, 1 − (2/5)σa/σt″ (Star 1989, of its P3
+    /// form; Case & Zweifel 1967 without anisotropy). Against the walk (n = 1.5, α = .6, σs 81.38,
+    /// d .165, g 1/3) that makes 1.01, .98, .98 and 1.02 of 1.01, .97, .95 and .91 for σa = 0, 1, 2
+    /// and 5 mm⁻¹.
     pub fn with_boundaries(&self, r_i: f64, inner: f64) -> (f64, f64) {
         let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
         let sigma_t = sigma_s + self.absorption;
@@ -92,10 +97,23 @@ impl Slab {
         let l = self.thickness + 2.0 * z_b;
         let a = (inner / sigma_t).min(self.thickness);
         let b = a + 2.0 * z_b;
-        let ratio = |k: f64| sinh_ratio(sigma_tr, k, l);
-        let reflected = 0.5 * albedo * (ratio(l - a) + ratio(l - b));
-        let transmitted = 0.5 * albedo * (ratio(a) + ratio(b));
+        let reflected = |k: f64| sinh_ratio(sigma_tr, k, l);
+        let reflected = 0.5 * albedo * (reflected(l - a) + reflected(l - b));
+        let sigma_far = sigma_tr * (1.0 - 0.4 * self.absorption / self.second_moment());
+        let transmitted = |k: f64| sinh_ratio(sigma_far, k, l);
+        let transmitted = 0.5 * albedo * (transmitted(a) + transmitted(b));
         (reflected.clamp(0.0, 1.0), transmitted.clamp(0.0, 1.0))
+    }
+
+    /// σt″ = σa + σs(1 − g₂), in mm⁻¹, g₂ the second moment of scattering: g² of each lobe.
+    fn second_moment(&self) -> f64 {
+        let Phase {
+            forward_share,
+            g_forward,
+            g_backward,
+        } = self.phase;
+        let g_2 = forward_share * g_forward.powi(2) + (1.0 - forward_share) * g_backward.powi(2);
+        self.absorption + (1.0 - g_2) * self.scattering
     }
 
     /// The slab alone, so that ink can lie between it and its boundaries.
@@ -122,6 +140,21 @@ impl Slab {
         let absorbed = self.absorption / (self.absorption + sigma_s);
         let (reflected, _) = self.with_boundaries(r_i, inner);
         reflected * (-STRENGTH * absorbed * absorbed / (absorbed + ONSET)).exp()
+    }
+
+    /// Share of the light that has entered which comes through, both boundaries included: that of
+    /// [`Self::with_boundaries`], and what the walk finds more of where a little is absorbed.
+    ///
+    /// The walk finds (n = 1.5, α = .6, σs 81.38, g 1/3; d .1 to .3, against itself without
+    /// absorption) 1.01, 1.02, 1.02 and .98 of diffusion's transmittance where σa/(σa + σs′) is
+    /// .0055, .018, .036 and .084.
+    pub fn transmittance(&self, r_i: f64, inner: f64) -> f64 {
+        const STRENGTH: f64 = 3.0;
+        const RANGE: f64 = 0.022;
+        let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
+        let absorbed = self.absorption / (self.absorption + sigma_s);
+        let (_, transmitted) = self.with_boundaries(r_i, inner);
+        transmitted * (1.0 + STRENGTH * absorbed * (-absorbed / RANGE).exp())
     }
 
     /// The same slab with the absorption that makes it, over a back boundary of reflectance

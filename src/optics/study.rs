@@ -156,7 +156,7 @@ impl Study {
                 at_capture = whole(share, at_capture).2.at_capture;
             }
             let (_, slabs, _) = whole(share, at_capture);
-            per_channel(&slabs, |slab| slab.with_boundaries(r_i, inner_mean).1)
+            per_channel(&slabs, |slab| slab.transmittance(r_i, inner_mean))
         };
         // More than all is what no slab reflects: none of these absorbs.
         let (_, clear, of_clear) = whole(DVec3::splat(1e9), DVec3::ONE);
@@ -407,7 +407,7 @@ impl Through {
         // Where absorption is strong, the adding of diffuse passes loses some of what diffusion
         // between the boundaries lets through.
         let steps = crossing(&through, &bare, inner_mean, DVec3::splat(inner_mean), eta);
-        let whole = per_channel(slabs, |slab| slab.with_boundaries(r_i, inner_mean).1);
+        let whole = per_channel(slabs, |slab| slab.transmittance(r_i, inner_mean));
         let gain = whole / (steps * mean.t_mean).max(DVec3::splat(1e-30));
         let gain = gain.clamp(DVec3::splat(0.5), DVec3::splat(2.0));
         through.transmitted *= gain;
