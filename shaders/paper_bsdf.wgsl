@@ -315,7 +315,7 @@ struct Through {
     transmitted_leaning: vec3<f32>,
     straight_mean: vec3<f32>,
     flat_share: vec3<f32>,
-    toned: array<vec3<f32>, 4>,
+    toned: array<vec3<f32>, 5>,
     lightest: vec3<f32>,
 }
 
@@ -433,7 +433,7 @@ fn toned_paper(through: Through, share: vec3<f32>) -> vec3<f32> {
     let x = clamp(share, vec3(TONE_MIN), through.lightest);
     let ln_x = log(x);
     let c = through.toned;
-    return exp(((c[3] * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0]);
+    return exp((((c[4] * ln_x + c[3]) * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0]);
 }
 
 struct Seen {

@@ -17,6 +17,7 @@ use crate::{
     optics::{
         medium::{Matter, MediumKind},
         photometry::Photometry,
+        slab::{Phase, Slab, UM_PER_MM},
     },
     units::{Candela, Degrees, Kelvin, Lux, Micrometres, Millimetres, Nits},
 };
@@ -132,6 +133,22 @@ pub struct Paper {
     /// Direction of the lobe's longer axis, anticlockwise from the right as the recto is seen.
     pub anisotropy_angle: Degrees,
     pub source: Source,
+}
+
+impl Paper {
+    /// The sheet's body; its absorption follows from its albedo.
+    pub fn slab(&self) -> Slab {
+        Slab {
+            scattering: self.scattering_per_mm,
+            absorption: 0.0,
+            thickness: self.thickness.0 / UM_PER_MM,
+            phase: Phase {
+                forward_share: self.forward_share,
+                g_forward: self.g_forward,
+                g_backward: self.g_backward,
+            },
+        }
+    }
 }
 
 /// The macroscopic shape of the sheet.

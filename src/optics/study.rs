@@ -183,7 +183,7 @@ pub const TONE_MIN: f64 = 0.1;
 /// Of the bare paper's albedo: no paper has lighter spots.
 const TONE_MAX: f64 = 1.5;
 /// Coefficients of what toned paper passes.
-pub const TONE_TERMS: usize = 4;
+pub const TONE_TERMS: usize = 5;
 /// τ of ink at which half of what the boundary sends back does not come again: ρ(1/6) is .49 of
 /// ρ(0) (n = 1.5).
 pub const LOST_DEPTH: f64 = 1.0 / 6.0;
@@ -484,7 +484,7 @@ pub fn toned_paper(through: &Through, share: DVec3) -> DVec3 {
     let x = share.clamp(DVec3::splat(TONE_MIN), through.lightest);
     let ln_x = x.map(f64::ln);
     let c = &through.toned;
-    (((c[3] * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0]).exp()
+    ((((c[4] * ln_x + c[3]) * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0]).exp()
 }
 
 /// The same of even light, which comes in along its mean path, `m_o` the mean cosine within
@@ -500,7 +500,7 @@ impl Through {
     /// Sets what toned paper passes, by what all of a sheet `passes` whose albedo is a share of
     /// the bare paper's; `lightest` is the share of paper that absorbs nothing.
     fn tone(&mut self, lightest: DVec3, passes: impl Fn(DVec3) -> DVec3) {
-        const NODES: [f64; TONE_TERMS] = [1.0, 0.8, 0.5, 0.15];
+        const NODES: [f64; TONE_TERMS] = [1.0, 0.8, 0.55, 0.3, 0.13];
         self.lightest = lightest.clamp(DVec3::splat(TONE_MIN), DVec3::splat(TONE_MAX));
         let light = self.lightest.min(DVec3::ONE);
         let bare = passes(DVec3::ONE).max(DVec3::splat(1e-30));

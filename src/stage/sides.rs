@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     manifest::{
-        exhibit::{BARE_PAPER, Drawing, Paper, SideName},
+        exhibit::{BARE_PAPER, Drawing, SideName},
         lighting::Lighting,
     },
     needs::{MapUse, Needs, SideNeeds},
@@ -22,7 +22,6 @@ use crate::{
         microfacet::ALPHA_MIN,
         photometry::Photometry,
         refraction::PathTable,
-        slab::{Phase, Slab, UM_PER_MM},
         study::Study,
         table::InterfaceTable,
         tier::{self, Tier, albedo_of},
@@ -268,7 +267,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUnif
         } else {
             Arc::new(PathTable::at_roughness(paper.roughness, eta))
         };
-        let mut study = Study::new(&seen, &here, of_films, slab(paper));
+        let mut study = Study::new(&seen, &here, of_films, paper.slab());
         let media = Media::new(&side.media, &seen, &mean, &study);
         let on_other = Media::new(&side.other_media, &seen, &mean, &study);
         if side.terms.media_index {
@@ -317,20 +316,6 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUnif
         }
     }
     (uniform, rows)
-}
-
-/// The sheet's body; its absorption follows from its albedo.
-fn slab(paper: &Paper) -> Slab {
-    Slab {
-        scattering: paper.scattering_per_mm,
-        absorption: 0.0,
-        thickness: paper.thickness.0 / UM_PER_MM,
-        phase: Phase {
-            forward_share: paper.forward_share,
-            g_forward: paper.g_forward,
-            g_backward: paper.g_backward,
-        },
-    }
 }
 
 fn bound(side: &SideNeeds, images: Vec<Handle<Image>>) -> PaperMaps {

@@ -21,7 +21,7 @@ use crate::{
         refraction::PathTable,
         relief::{Horizon, mean_length, rise_of, widened},
         shade::{Behind, Spot, beams},
-        slab::{Phase, Slab, UM_PER_MM},
+        slab::UM_PER_MM,
         study::Study,
         table::InterfaceTable,
         tier::{Surface, Tier, albedo_of},
@@ -117,16 +117,6 @@ impl<'m> Sheet<'m> {
         };
         let surface = Surface::new(bare, paper.roughness, paper.index, specular);
         let here = InterfaceTable::at_roughness(paper.roughness, paper.index, paper.specular);
-        let slab = Slab {
-            scattering: paper.scattering_per_mm,
-            absorption: 0.0,
-            thickness: paper.thickness.0 / UM_PER_MM,
-            phase: Phase {
-                forward_share: paper.forward_share,
-                g_forward: paper.g_forward,
-                g_backward: paper.g_backward,
-            },
-        };
         let varies = side.terms.roughness_map || side.terms.normal_map;
         let paths = if varies {
             PathTable::new(paper.index)
@@ -134,7 +124,7 @@ impl<'m> Sheet<'m> {
             Arc::new(PathTable::at_roughness(paper.roughness, paper.index))
         };
         let mean = here.mean_at(paper.roughness);
-        let study = Study::new(&surface, &here, paths, slab);
+        let study = Study::new(&surface, &here, paths, paper.slab());
         let media = Media::new(&side.media, &surface, &mean, &study);
         let interface = if varies {
             InterfaceTable::new(paper.index, paper.specular)

@@ -207,7 +207,7 @@ fn crossings() -> Twins {
         body: format!(
             "let none = vec3(0.0);
             let through = Through({}, given[at + 22u], {}, none, {}, {}, none, none,
-                array(none, none, none, none), none);
+                array(none, none, none, none, none), none);
             let seen = Seen(none, given[at + 18u], none, {}, {});
             {}",
             vector(0),
