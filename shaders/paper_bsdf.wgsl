@@ -320,6 +320,7 @@ struct Through {
 }
 
 const TONE_MIN: f32 = 0.1;
+const TONE_LOG_MAX: f32 = 20.0;
 const DIFFUSE_COSINE: f32 = 0.66666666666667;
 const LOST_DEPTH: f32 = 0.16666666666667;
 
@@ -433,7 +434,8 @@ fn toned_paper(through: Through, share: vec3<f32>) -> vec3<f32> {
     let x = clamp(share, vec3(TONE_MIN), through.lightest);
     let ln_x = log(x);
     let c = through.toned;
-    return exp((((c[4] * ln_x + c[3]) * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0]);
+    let ln_t = (((c[4] * ln_x + c[3]) * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0];
+    return exp(min(ln_t, vec3(TONE_LOG_MAX)));
 }
 
 struct Seen {

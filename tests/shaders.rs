@@ -20,7 +20,7 @@ use recto::{
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
         refraction::COSINE_MIN,
-        study::{DIFFUSE_COSINE, LOST_DEPTH, TONE_MIN, TONE_TERMS},
+        study::{DIFFUSE_COSINE, LOST_DEPTH, TONE_LOG_MAX, TONE_MIN, TONE_TERMS},
         table::{ALPHA_FIT_MIN, LATE_TERMS, MU_TERMS},
     },
     sheet::{
@@ -254,6 +254,7 @@ fn constants_of_the_shaders_are_those_of_the_sources() {
     assert_eq!(constant(PAPER_BSDF, "ALPHA_FIT_MIN"), ALPHA_FIT_MIN);
     assert_eq!(constant(PAPER_BSDF, "COSINE_MIN"), COSINE_MIN);
     assert_eq!(constant(PAPER_BSDF, "TONE_MIN"), TONE_MIN);
+    assert_eq!(constant(PAPER_BSDF, "TONE_LOG_MAX"), TONE_LOG_MAX);
     for (name, value) in [
         ("DIFFUSE_COSINE", DIFFUSE_COSINE),
         ("LOST_DEPTH", LOST_DEPTH),

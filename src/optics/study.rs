@@ -182,6 +182,9 @@ fn per_channel(slabs: &[Slab; 3], of: impl Fn(&Slab) -> f64) -> DVec3 {
 pub const TONE_MIN: f64 = 0.1;
 /// Of the bare paper's albedo: no paper has lighter spots.
 const TONE_MAX: f64 = 1.5;
+/// ln of what the lightest spot passes beyond the sheet: where a sheet passes less than e^−20,
+/// nobody sees more.
+pub const TONE_LOG_MAX: f64 = 20.0;
 /// Coefficients of what toned paper passes.
 pub const TONE_TERMS: usize = 5;
 /// τ of ink at which half of what the boundary sends back does not come again: ρ(1/6) is .49 of
@@ -484,7 +487,8 @@ pub fn toned_paper(through: &Through, share: DVec3) -> DVec3 {
     let x = share.clamp(DVec3::splat(TONE_MIN), through.lightest);
     let ln_x = x.map(f64::ln);
     let c = &through.toned;
-    ((((c[4] * ln_x + c[3]) * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0]).exp()
+    let ln_t = (((c[4] * ln_x + c[3]) * ln_x + c[2]) * ln_x + c[1]) * ln_x + c[0];
+    ln_t.min(DVec3::splat(TONE_LOG_MAX)).exp()
 }
 
 /// The same of even light, which comes in along its mean path, `m_o` the mean cosine within
