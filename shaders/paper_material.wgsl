@@ -706,13 +706,15 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef SHEEN
     baked *= 1.0 - sheen * sheen_albedo(max(dot(n, v), MU_MIN));
 #endif
-    let seen = Seen(
-        depth_f,
-        clear,
-        depth_b,
-        internal_reflectance(paper.film, ink_f),
-        internal_reflectance(paper.film, ink_b),
-    );
+    var rho_f = internal_reflectance(paper.film, ink_f);
+    var rho_b = internal_reflectance(paper.film, ink_b);
+#ifdef MEDIA_INDEX
+    // The film's numbers are of its own index; where none lies, the boundary is the paper's.
+    let r_i = vec3(max(1.0 - interface_mean(y).t_mean / (paper.eta * paper.eta), 0.0));
+    rho_f = mix(r_i, internal_reflectance(paper.film, share_f), cover.film);
+    rho_b *= r_i / max(internal_reflectance(paper.film, vec3(1.0)), vec3(1e-3));
+#endif
+    let seen = Seen(depth_f, clear, depth_b, rho_f, rho_b);
 #else
     // Light crosses each ink once, where the photograph saw it crossed twice.
     let baked = sqrt(clamp(share_f, vec3(0.0), vec3(1.0)) * clamp(share_b, vec3(0.0), vec3(1.0)));
