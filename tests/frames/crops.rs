@@ -88,8 +88,11 @@ fn at_judged(picture: &Picture) -> Vec<[f64; 3]> {
 
 /// Where study misses the bounds, with the mean and the 99th percentile measured. All may
 /// only get better. In raking light three pixels of 256 at the edge of a groove are lit for the one
-/// and in shadow for the other.
-const MISSED: [(&str, &str, f64, f64); 1] = [("raking", "stylus", 0.49, 10.43)];
+/// and in shadow for the other. Bare paper on the light table is a little off as a whole.
+const MISSED: [(&str, &str, f64, f64); 2] = [
+    ("raking", "stylus", 0.49, 10.43),
+    ("light-table", "paper", 0.70, 1.45),
+];
 /// From one driver to another.
 const SPREAD: f64 = 1.05;
 
