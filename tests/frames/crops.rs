@@ -87,8 +87,8 @@ fn at_judged(picture: &Picture) -> Vec<[f64; 3]> {
 }
 
 /// Where study misses the bounds, with the mean and the 99th percentile measured. All may
-/// only get better. In raking light three pixels of 256 at the edge of a groove are lit for the one
-/// and in shadow for the other. Bare paper on the light table is a little off as a whole.
+/// only get better. The causes are not known: raking, the mean is met and a few pixels of 256 are far
+/// off.
 const MISSED: [(&str, &str, f64, f64); 2] = [
     ("raking", "stylus", 0.49, 10.43),
     ("light-table", "paper", 0.70, 1.45),
