@@ -95,6 +95,15 @@ if ! command -v cargo >/dev/null; then
     exit 1
 fi
 install_packages
+# Cargo tells checkouts that share a target folder apart by the times of their files alone, and
+# would take what another one built, with that one's paths, for this one's.
+owner=$CARGO_TARGET_DIR/checkout
+if [ -e "$owner" ] && [ "$(cat "$owner")" != "$PWD" ]; then
+    echo "setup: $(cat "$owner") was built here last, so Recto (not Bevy) is built anew" >&2
+    cargo clean --quiet --release --package recto
+fi
+mkdir -p "$CARGO_TARGET_DIR"
+echo "$PWD" >"$owner"
 # A test target has to be named: it switches on the features that tests ask of shared crates.
 # The program alone would be built with others, and `cargo test` would then build Bevy again.
 cargo build --release --locked --bin recto --test cli
