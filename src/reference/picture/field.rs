@@ -63,6 +63,50 @@ impl Field {
             })
     }
 
+    /// Width and height in texels.
+    pub fn size(&self) -> [usize; 2] {
+        [self.level.width, self.level.height].map(|edge| edge as usize)
+    }
+
+    /// The first channel at a texel inside.
+    pub fn texel(&self, [x, y]: [usize; 2]) -> f64 {
+        let stored = self
+            .level
+            .texels
+            .get((y * self.size()[0] + x) * self.channels);
+        f64::from(stored.unwrap_or_default())
+    }
+
+    /// A place of the side frame in texels, their middles at whole numbers.
+    pub fn in_texels(&self, place: DVec2) -> DVec2 {
+        let size = DVec2::new(self.level.width.into(), self.level.height.into());
+        self.uv_from_side.transform_point2(place) * size - 0.5
+    }
+
+    /// The first channel at a place in texels: the cubic B-spline with the texels as its
+    /// coefficients.
+    pub fn spline(&self, at: DVec2) -> f64 {
+        let [width, height] = self.size();
+        let most = DVec2::new(width as f64, height as f64) - 1.0;
+        let at = at.clamp(DVec2::ZERO, most);
+        let (cell, part) = (at.floor(), at.fract());
+        let weights = |t: f64| {
+            let s = 1.0 - t;
+            let near = |t: f64| (4.0 + t * t * (3.0 * t - 6.0)) / 6.0;
+            [s * s * s / 6.0, near(t), near(s), t * t * t / 6.0]
+        };
+        let index =
+            |cell: f64, k: usize, edge: usize| (cell as usize + k).saturating_sub(1).min(edge - 1);
+        let (across, down) = (weights(part.x), weights(part.y));
+        let row = |y: usize| {
+            let each = across.iter().enumerate();
+            each.map(|(k, w)| w * self.texel([index(cell.x, k, width), y]))
+                .sum::<f64>()
+        };
+        let each = down.iter().enumerate();
+        each.map(|(k, w)| w * row(index(cell.y, k, height))).sum()
+    }
+
     /// The smaller edge of a texel on the sheet, in mm.
     pub fn texel_mm(&self) -> f64 {
         let size = DVec2::new(self.level.width.into(), self.level.height.into());
