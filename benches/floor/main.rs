@@ -2,7 +2,8 @@
 //! distant lamp, from the render pass's own GPU span; what a further lamp, the relief's shadows, a
 //! sampled rectangle and light through the sheet add to a tier; and what the study tier costs on
 //! bare paper beside a shader written by hand for that alone. Then the time and memory from start
-//! to the first picture. `cargo bench --bench floor`; `RECTO_BENCH_EXHIBIT` names another exhibit.
+//! to the first picture. `cargo bench --bench floor`; names of cases after `--` measure these alone
+//! and what their ratios are to; `RECTO_BENCH_EXHIBIT` names another exhibit.
 
 mod hand;
 
@@ -126,10 +127,23 @@ fn main() -> Result<(), Anything> {
         PathBuf::from,
     );
     let (exhibit, _) = Exhibit::read(&folder)?;
+    let names: Vec<String> = std::env::args().skip(1).collect();
+    let named = |case: &Case| names.iter().any(|name| name == case.name);
+    // Cargo passes a flag of its own.
+    let is_all = names.iter().all(|name| name.starts_with("--"));
+    let wanted: Vec<bool> = (0..CASES.len())
+        .map(|i| {
+            is_all
+                || CASES
+                    .iter()
+                    .enumerate()
+                    .any(|(k, c)| named(c) && (k == i || c.to == i))
+        })
+        .collect();
     let mut samples: Vec<Vec<f64>> = CASES.iter().map(|_| Vec::new()).collect();
     let mut shaded = vec![0; CASES.len()];
     for _ in 0..ROUNDS {
-        for (i, case) in CASES.iter().enumerate() {
+        for (i, case) in CASES.iter().enumerate().filter(|(i, _)| wanted[*i]) {
             let tier = match case.sheet {
                 Sheet::Tier(tier) => tier,
                 Sheet::Floor | Sheet::Standard => Tier::Gallery,
@@ -168,20 +182,30 @@ fn main() -> Result<(), Anything> {
     );
     let all: Vec<[f64; 2]> = samples
         .iter_mut()
-        .map(|samples| [least(samples), median(samples)])
+        .zip(&wanted)
+        .map(|(samples, wanted)| {
+            if *wanted {
+                [least(samples), median(samples)]
+            } else {
+                [f64::NAN; 2]
+            }
+        })
         .collect();
-    for (case, ([low, middle], shaded)) in CASES.iter().zip(all.iter().zip(&shaded)) {
-        let [of_low, of_middle] = all[case.to];
+    for (i, case) in CASES.iter().enumerate().filter(|(i, _)| wanted[*i]) {
+        let ([low, middle], [of_low, of_middle]) = (all[i], all[case.to]);
         println!(
             "{:18} {low:9.3} {middle:9.3} {:9.2} {:7.2} {:7.2}  {}",
             case.name,
-            low * 1e6 / *shaded as f64,
+            low * 1e6 / shaded[i] as f64,
             low / of_low,
             middle / of_middle,
             CASES[case.to].name
         );
     }
-    first_picture(&folder)
+    if is_all {
+        first_picture(&folder)?;
+    }
+    Ok(())
 }
 
 /// The largest difference of a channel.
