@@ -130,9 +130,7 @@ struct Paper {
     // Of the rules of 1 to 7 points: nodes and weights (xy), and the azimuths of the first quarter
     // of a disc of as many rings (zw).
     quadrature: array<vec4<f32>, 28>,
-    // What the side is made of: the study tier, and light through the sheet.
-    film: Film,
-    split: Split,
+    // Light through the sheet.
     through: Through,
     // Diffuse part of the bare paper's albedo on the side that is seen, and on the other.
     lit_bare: vec3<f32>,
@@ -323,7 +321,7 @@ fn light_small(light: Light, p: vec3<f32>) -> Incidence {
 }
 
 #ifdef COUPLED
-// Rows over √α, narrowed by src/sheet/rows.rs. Each holds what is the same for all directions, T
+// Rows over √α, narrowed by src/sheet/rows.rs, with paths behind a first one. Each holds what is the same for all directions, T
 // and E₂ over powers of √μ with the index of the paths, P_c, and P over powers of √μ.
 fn row_of(alpha: f32) -> i32 {
     return i32(fit_root(alpha) * paper.row_scale + paper.row_offset);
@@ -347,6 +345,38 @@ fn interface_row(y: i32) -> InterfaceRow {
 #endif
 
 #ifdef PATHS
+// The first row holds what is the same at every roughness.
+fn film_of_rows() -> Film {
+    return Film(
+        array<vec4<f32>, 7>(
+            textureLoad(rows, vec2(0, 0), 0), textureLoad(rows, vec2(1, 0), 0),
+            textureLoad(rows, vec2(2, 0), 0), textureLoad(rows, vec2(3, 0), 0),
+            textureLoad(rows, vec2(4, 0), 0), textureLoad(rows, vec2(5, 0), 0),
+            textureLoad(rows, vec2(6, 0), 0),
+        ),
+        array<vec4<f32>, 7>(
+            textureLoad(rows, vec2(7, 0), 0), textureLoad(rows, vec2(8, 0), 0),
+            textureLoad(rows, vec2(9, 0), 0), textureLoad(rows, vec2(10, 0), 0),
+            textureLoad(rows, vec2(11, 0), 0), textureLoad(rows, vec2(12, 0), 0),
+            textureLoad(rows, vec2(13, 0), 0),
+        ),
+        textureLoad(rows, vec2(14, 0), 0),
+    );
+}
+
+fn split_of_rows() -> Split {
+    let kappa = textureLoad(rows, vec2(15, 0), 0);
+    let at_capture = textureLoad(rows, vec2(16, 0), 0);
+    let leaning = textureLoad(rows, vec2(17, 0), 0);
+    let of_direction = textureLoad(rows, vec2(18, 0), 0);
+    let rest = textureLoad(rows, vec2(19, 0), 0);
+    let last = textureLoad(rows, vec2(20, 0), 0);
+    return Split(
+        kappa.xyz, kappa.w, at_capture.xyz, at_capture.w, leaning.xyz, leaning.w,
+        rest.x, rest.y, of_direction, rest.z, rest.w, last.x,
+    );
+}
+
 fn path_index(y: i32) -> f32 {
     return textureLoad(rows, vec2(2, y), 0).w;
 }
@@ -618,6 +648,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
 #ifdef PATHS
     // Films lie under the facets as they are, combed or not.
+    let film = film_of_rows();
+    let split = split_of_rows();
     let y_films = row_of(alpha);
     let paths = path_row(y_films);
     let path_n = path_index(y_films);
@@ -625,7 +657,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let path_o = path_at(paths, dot(n, v), path_n);
 #endif
 #ifdef TIER_STUDY
-    let darkness = optical_depth(paper.film, capture, share_f);
+    let darkness = optical_depth(film, capture, share_f);
 #ifdef MATTER
     // Elsewhere the paper itself is dark.
     let depth = darkness * cover.film;
@@ -689,7 +721,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     var ink_f = share_f;
     var ink_b = share_b;
     var depth_f = darkness;
-    var depth_b = optical_depth(paper.film, capture, share_b);
+    var depth_b = optical_depth(film, capture, share_b);
 #ifdef MATTER
     // Where no ink lies, the paper itself is dark or light.
     let toned = toned_paper(paper.through, share_f);
@@ -706,13 +738,13 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef SHEEN
     baked *= 1.0 - sheen * sheen_albedo(max(dot(n, v), MU_MIN));
 #endif
-    var rho_f = internal_reflectance(paper.film, ink_f);
-    var rho_b = internal_reflectance(paper.film, ink_b);
+    var rho_f = internal_reflectance(film, ink_f);
+    var rho_b = internal_reflectance(film, ink_b);
 #ifdef MEDIA_INDEX
     // The film's numbers are of its own index; where none lies, the boundary is the paper's.
     let r_i = vec3(max(1.0 - interface_mean(y).t_mean / (paper.eta * paper.eta), 0.0));
-    rho_f = mix(r_i, internal_reflectance(paper.film, share_f), cover.film);
-    rho_b *= r_i / max(internal_reflectance(paper.film, vec3(1.0)), vec3(1e-3));
+    rho_f = mix(r_i, internal_reflectance(film, share_f), cover.film);
+    rho_b *= r_i / max(internal_reflectance(film, vec3(1.0)), vec3(1e-3));
 #endif
     let seen = Seen(depth_f, clear, depth_b, rho_f, rho_b);
 #else
@@ -732,7 +764,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     var radiance = vec3(0.0);
 #ifdef TRANSMISSION
 #ifdef COUPLED
-    let crossed = through_study(paper.film, paper.through, seen, at_o, mean, path_o, s.eta);
+    let crossed = through_study(film, paper.through, seen, at_o, mean, path_o, s.eta);
 #else
     let crossed = paper.through.flat_share * clear;
 #endif
@@ -816,7 +848,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
                 let ways = Ways(capture, path_at(paths, mu_i, path_n), path_o);
 #ifdef GLOSS
                 var f = brdf_study_diffuse(
-                    s, g, at_i, at_o, mean, paper.split, depth, ways, paper_albedo,
+                    s, g, at_i, at_o, mean, split, depth, ways, paper_albedo,
                 );
 #ifdef ANISOTROPIC
                 let straight = gloss_lobe_anisotropic(s, paper.media.stretch, framed_l, framed_v);
@@ -835,7 +867,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
                 f += surface * brdf_gloss(s, straight, back, paper.media.retro, at_i, at_o, mean);
 #else
                 var f = brdf_study(
-                    s, g, at_i, at_o, mean, paper.split, depth, ways, paper_albedo, surface,
+                    s, g, at_i, at_o, mean, split, depth, ways, paper_albedo, surface,
                 );
 #endif
 #ifdef BODY
@@ -904,8 +936,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef COUPLED
     var diffuse = paper_albedo * (at_o.t * mean.t_mean * mean.capture);
 #ifdef TIER_STUDY
-    diffuse *= beyond_capture(depth, capture, paper.film.diffuse_path, path_o)
-        * split_even(paper.split, mean_inner_cosine(path_o), depth);
+    diffuse *= beyond_capture(depth, capture, film.diffuse_path, path_o)
+        * split_even(split, mean_inner_cosine(path_o), depth);
 #ifdef BODY
     diffuse += shares.body * (at_o.t * mean.t_mean * mean.capture);
 #endif

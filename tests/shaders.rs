@@ -454,8 +454,6 @@ impl Sentinel {
             lights: std::array::from_fn::<_, MAX_LAMPS, _>(|_| self.light().0),
             overlays: std::array::from_fn::<_, MAX_OVERLAYS, _>(|_| self.map_place().0),
             quadrature: std::array::from_fn::<_, { GAUSS_LEGENDRE.len() }, _>(|_| self.vec4()),
-            film: self.film().0,
-            split: self.split().0,
             through: self.through().0,
             lit_bare: self.vec3(),
             f_capture: self.f32(),

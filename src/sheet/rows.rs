@@ -1,9 +1,9 @@
-//! What a side's interface and its films do at each roughness, as the shader reads it: rows of
-//! texels, one row for each of many roughnesses.
+//! What a side's interface, films and paper do, as the shader reads it: rows of texels, the first
+//! for what is the same at every roughness, then one for each of many roughnesses.
 //!
 //! The polynomials over roughness are summed here, in f64, and once. Summed for each pixel they
 //! took most of a frame on lavapipe, where a number read from a uniform costs what thirty products
-//! cost. Rows are [`ROWS`] to the range of √α, nearer to each other than the fits are to the
+//! cost, and one of a texel half of that. Rows are [`ROWS`] to the range of √α, nearer to each other than the fits are to the
 //! truth: half a step changes T by less than 5e-4.
 
 use bevy::{
@@ -13,18 +13,22 @@ use bevy::{
 };
 use glam::{DVec4, Vec2, Vec4};
 
+use super::uniform::{FilmUniform, SplitUniform};
 use crate::optics::{
-    ink::capture_path,
+    ink::{FILM_TERMS, capture_path},
     refraction::{PATH_TERMS, PathTable},
+    study::Study,
     table::{ALPHA_FIT_MIN, InterfaceRow, InterfaceTable},
 };
 
 /// Rows over √α.
 const ROWS: usize = 1024;
-/// Texels of a row without paths, and with them: what is the same for all directions; T; E₂;
-/// P_c; P.
+/// Texels of a row of the interface: what is the same for all directions; T; E₂.
 const INTERFACE_TEXELS: usize = 5;
-const TEXELS: usize = INTERFACE_TEXELS + 1 + PATH_TERMS;
+/// P_c and P behind them.
+const PATH_TEXELS: usize = INTERFACE_TEXELS + 1 + PATH_TERMS;
+/// The first row, which sides without paths lack: the film, then how light is split.
+const TEXELS: usize = 2 * FILM_TERMS + 1 + 6;
 
 /// The rows of one side.
 pub struct Rows {
@@ -35,27 +39,46 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// For a side whose roughness differs from spot to spot.
-    pub fn over_roughness(interface: &InterfaceTable, paths: Option<&PathTable>) -> Self {
+    /// For a side whose roughness differs from spot to spot; with `study`, films and paper too.
+    pub fn over_roughness(interface: &InterfaceTable, study: Option<&Study>) -> Self {
         let low = ALPHA_FIT_MIN.sqrt();
         let scale = (ROWS - 1) as f64 / (1.0 - low);
         let alphas = (0..ROWS).map(|k| (low + k as f64 / scale).powi(2));
-        Self {
-            texels: alphas
-                .flat_map(|alpha| texels(interface, paths, alpha))
-                .collect(),
-            // To the nearest.
-            place: Vec2::new(scale as f32, (0.5 - low * scale) as f32),
-            width: width(paths),
-        }
+        Self::new(interface, study, alphas, [scale, -low * scale])
     }
 
     /// For a side of one roughness (in [0, 1]).
-    pub fn at_roughness(interface: &InterfaceTable, paths: Option<&PathTable>, alpha: f64) -> Self {
+    pub fn at_roughness(interface: &InterfaceTable, study: Option<&Study>, alpha: f64) -> Self {
+        Self::new(interface, study, [alpha], [0.0; 2])
+    }
+
+    fn new(
+        interface: &InterfaceTable,
+        study: Option<&Study>,
+        alphas: impl IntoIterator<Item = f64>,
+        [scale, offset]: [f64; 2],
+    ) -> Self {
+        let width = if study.is_some() {
+            TEXELS
+        } else {
+            INTERFACE_TEXELS
+        };
+        let paths = study.map(|study| &*study.film.paths);
+        let each = alphas
+            .into_iter()
+            .map(|alpha| texels(interface, paths, alpha));
+        let of_study = study.map(constants);
+        let first = f64::from(u8::from(of_study.is_some()));
+        let rows = of_study.into_iter().chain(each);
+        let texels = rows.flat_map(|mut row| {
+            row.resize(width, Vec4::ZERO);
+            row
+        });
         Self {
-            texels: texels(interface, paths, alpha),
-            place: Vec2::ZERO,
-            width: width(paths),
+            texels: texels.collect(),
+            // To the nearest.
+            place: Vec2::new(scale as f32, (0.5 + first + offset) as f32),
+            width,
         }
     }
 
@@ -82,12 +105,26 @@ impl Rows {
     }
 }
 
-fn width(paths: Option<&PathTable>) -> usize {
-    if paths.is_some() {
-        TEXELS
-    } else {
-        INTERFACE_TEXELS
-    }
+/// What is the same at every roughness.
+fn constants(study: &Study) -> Vec<Vec4> {
+    let film = FilmUniform::new(&study.film);
+    let split = SplitUniform::new(&study.split);
+    let mut texels = [film.excess, film.internal].concat();
+    texels.extend([
+        film.diffuse_path,
+        split.kappa.extend(split.mean),
+        split.at_capture.extend(split.depth),
+        split.leaning.extend(split.inner_mean),
+        split.of_direction,
+        Vec4::new(
+            split.alike,
+            split.captured,
+            split.forward_share,
+            split.g_forward,
+        ),
+        Vec4::new(split.g_backward, 0.0, 0.0, 0.0),
+    ]);
+    texels
 }
 
 fn texels(interface: &InterfaceTable, paths: Option<&PathTable>, alpha: f64) -> Vec<Vec4> {
@@ -102,6 +139,7 @@ fn texels(interface: &InterfaceTable, paths: Option<&PathTable>, alpha: f64) -> 
         DVec4::new(late[4], late[5], late[6], 0.0),
     ];
     if let Some(paths) = paths {
+        texels.reserve(PATH_TEXELS - INTERFACE_TEXELS);
         texels.push(capture_path(paths, alpha));
         texels.extend(paths.row(alpha));
     }
@@ -110,11 +148,22 @@ fn texels(interface: &InterfaceTable, paths: Option<&PathTable>, alpha: f64) -> 
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::optics::{
         refraction::{PathRow, path_at},
+        slab::Slab,
         table::{fit_root, interface_at},
+        tier::Surface,
     };
+    use crate::units::Micrometres;
+
+    fn study(interface: &InterfaceTable) -> Study {
+        let bare = Surface::new(DVec3::new(0.8, 0.7, 0.5), 0.6, 1.5, 1.0);
+        let slab = Slab::rag_paper(Micrometres(165.0));
+        Study::new(&bare, interface, PathTable::new(1.5), slab)
+    }
 
     /// The row that the shader reads, in its own precision.
     fn row_of(rows: &Rows, alpha: f32) -> &[Vec4] {
@@ -125,8 +174,10 @@ mod tests {
 
     #[test]
     fn every_roughness_finds_a_row_of_its_own() {
-        let (interface, paths) = (InterfaceTable::new(1.5, 1.0), PathTable::new(1.5));
-        let rows = Rows::over_roughness(&interface, Some(&paths));
+        let interface = InterfaceTable::new(1.5, 1.0);
+        let study = study(&interface);
+        let rows = Rows::over_roughness(&interface, Some(&study));
+        let paths = &study.film.paths;
         let mut worst = [0.0f64; 3];
         for k in 0..=1000 {
             let alpha = 0.1 + 0.9 * f64::from(k) / 1000.0;
@@ -152,7 +203,7 @@ mod tests {
                 worst[2] = worst[2].max((path - paths.at(mu, alpha)).abs().max_element());
             }
             assert!(
-                (row[5].as_dvec4() - capture_path(&paths, alpha))
+                (row[5].as_dvec4() - capture_path(paths, alpha))
                     .abs()
                     .max_element()
                     < 0.01
@@ -177,5 +228,12 @@ mod tests {
             assert_eq!(row_of(&rows, alpha).len(), INTERFACE_TEXELS);
         }
         assert_eq!(rows.image().height(), 1);
+        // With films, those come first.
+        let study = study(&interface);
+        let rows = Rows::at_roughness(&interface, Some(&study), 0.02);
+        assert_eq!(rows.image().height(), 2);
+        assert_eq!(rows.texels[0].truncate(), study.film.excess[0].as_vec3());
+        let mean = interface.mean_at(0.02).t_mean as f32;
+        assert_eq!(row_of(&rows, 0.7)[0].y, mean);
     }
 }

@@ -14,7 +14,7 @@ use crate::{
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
         quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
         refraction::{PATH_TERMS, PathRow},
-        study::{Split, Study, TONE_TERMS, Through},
+        study::{Split, TONE_TERMS, Through},
         table::{InterfaceMean, InterfaceRow, LATE_TERMS, MU_TERMS},
     },
 };
@@ -328,8 +328,6 @@ pub struct PaperUniform {
     pub lights: [LightUniform; MAX_LAMPS],
     pub overlays: [MapPlace; MAX_OVERLAYS],
     pub quadrature: [Vec4; GAUSS_LEGENDRE.len()],
-    pub film: FilmUniform,
-    pub split: SplitUniform,
     pub through: ThroughUniform,
     pub lit_bare: Vec3,
     pub f_capture: f32,
@@ -360,13 +358,6 @@ impl PaperUniform {
     pub fn set_eye(&mut self, clip_from_table: DMat4, eye: DVec4, table_from_local: DMat4) {
         self.clip_from_local = (clip_from_table * table_from_local).as_mat4();
         self.eye = (table_from_local.inverse() * eye).as_vec4();
-    }
-
-    /// Sets what the side is made of.
-    pub fn set_study(&mut self, study: &Study) {
-        self.film = FilmUniform::new(&study.film);
-        self.split = SplitUniform::new(&study.split);
-        self.through = ThroughUniform::new(&study.through);
     }
 
     /// Sets the lamps, given in the table frame.

@@ -30,7 +30,7 @@ use crate::{
         PaperMaps, PaperMaterial,
         mesh::SideSurface,
         rows::Rows,
-        uniform::{MapPlace, MediaUniform, PaperUniform},
+        uniform::{MapPlace, MediaUniform, PaperUniform, ThroughUniform},
         upload::profile_image,
     },
 };
@@ -255,7 +255,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUnif
         let lit = |of: &tier::Surface| albedo_of(of, &mean).max(DVec3::splat(1e-3)).as_vec3();
         (uniform.lit_bare, uniform.other_bare) = (lit(&seen), lit(&other));
     }
-    let mut paths = None;
+    let mut films = None;
     if side.terms.tier == Tier::Study || side.terms.transmission {
         let eta = if side.terms.media_index {
             side.media.film_index(paper.index)
@@ -273,16 +273,16 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUnif
         if side.terms.media_index {
             study = media.with_films(&seen, &mean, study);
         }
-        uniform.set_study(&study);
+        uniform.through = ThroughUniform::new(&study.through);
         uniform.media = MediaUniform::new(&media, &on_other, paper, side.side);
-        paths = Some(study.film.paths);
+        films = Some(study);
     }
     let rows = side.terms.tier.is_coupled().then(|| {
         if varies || side.terms.anisotropic {
             let table = InterfaceTable::new(paper.index, paper.specular);
-            Rows::over_roughness(&table, paths.as_deref())
+            Rows::over_roughness(&table, films.as_ref())
         } else {
-            Rows::at_roughness(&here, paths.as_deref(), alpha)
+            Rows::at_roughness(&here, films.as_ref(), alpha)
         }
     });
     if let Some(rows) = &rows {
