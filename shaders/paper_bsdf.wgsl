@@ -322,21 +322,21 @@ struct Through {
 const TONE_MIN: f32 = 0.1;
 const TONE_LOG_MAX: f32 = 20.0;
 const DIFFUSE_COSINE: f32 = 0.66666666666667;
+const KEPT_WITHIN: f32 = 0.973;
 const LOST_DEPTH: f32 = 0.16666666666667;
 
 fn crossing(through: Through, seen: Seen, m_f: f32, m_b: vec3<f32>, eta: f32) -> vec3<f32> {
     let t = min(through.transmitted * seen.clear, through.reflected + through.transmitted);
     let r = through.reflected + through.transmitted - t;
-    let rho_f = seen.rho_f;
-    let rho_b = seen.rho_b;
-    let passed = through.transmitted_leaning * seen.clear;
-    let returned = through.reflected_leaning * t * seen.clear;
-    let even = 0.5 * (through.inner_mean + DIFFUSE_COSINE);
-    let before = (passed * (1.0 - r * rho_f) - returned * rho_f) * (m_f - even);
-    let behind = (passed * (1.0 - r * rho_b) - returned * rho_b) * (m_b - even);
+    let rho_f = KEPT_WITHIN * seen.rho_f;
+    let rho_b = KEPT_WITHIN * seen.rho_b;
+    let returned = through.reflected_leaning * seen.clear;
+    let leaning_f = through.transmitted_leaning * (1.0 - r * rho_f) - returned * rho_f;
+    let leaning_b = through.transmitted_leaning * (1.0 - r * rho_b) - returned * rho_b;
+    let steeper_f = max(1.0 + leaning_f * (m_f - DIFFUSE_COSINE), vec3(0.0));
+    let steeper_b = max(1.0 + leaning_b * (m_b - DIFFUSE_COSINE), vec3(0.0));
     let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
-    let crossed = max(t + before + behind, vec3(0.0));
-    return crossed / (eta * eta * max(passes, vec3(1e-6)));
+    return t * steeper_f * steeper_b / (eta * eta * passes);
 }
 
 fn phase_lobe(g: f32, cos_deflection: f32) -> f32 {

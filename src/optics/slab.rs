@@ -80,22 +80,28 @@ impl Slab {
     /// included, for the boundaries' internal diffuse reflectance `r_i` in [0, 1). `inner` is the
     /// mean cosine inside of the light that enters, in [0, 1]: 1 for a beam along the normal.
     ///
-    /// Diffusion between extrapolated boundaries with the source one transport mean free path
-    /// along that light: the closed form of the sum over image dipoles (Donner & Jensen 2005,
-    /// eq. 11 and 12). In a slab thinner than that the source lies at its far side. What comes
-    /// through has decayed less fast than diffusion's √(3σaσt′) says where absorption is strong: by
-    /// the next term of the transport equation's own length, 1 − (2/5)σa/σt″ (Star 1989, of its P3
-    /// form; Case & Zweifel 1967 without anisotropy). Against the walk (n = 1.5, α = .6, σs 81.38,
-    /// d .165, g 1/3) that makes 1.01, .98, .98 and 1.02 of 1.01, .97, .95 and .91 for σa = 0, 1, 2
-    /// and 5 mm⁻¹.
+    /// Diffusion between extrapolated boundaries with the source about one transport mean free
+    /// path along that light: the closed form of the sum over image dipoles (Donner & Jensen 2005,
+    /// eq. 11 and 12). In a slab thinner than that the source lies at its far side.
+    ///
+    /// How far out the boundaries and how deep the source lie was fitted to walks through slabs
+    /// that absorb nothing (n 1.3, 1.5 and 1.7, τ′ 1 to 16, light at 0 and 60°), all of which
+    /// transmit within .9% (were 2.6%, beyond τ′ = 2). Without boundaries both are those of
+    /// transport theory: together 4/3, and the extrapolation Milne's .7104 mean free paths.
+    ///
+    /// What comes through has decayed less fast than diffusion's √(3σaσt′) says where absorption is
+    /// strong: by the next term of the transport equation's own length, 1 − (2/5)σa/σt″ (Star 1989,
+    /// of its P3 form; Case & Zweifel 1967 without anisotropy).
     pub fn with_boundaries(&self, r_i: f64, inner: f64) -> (f64, f64) {
         let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
         let sigma_t = sigma_s + self.absorption;
         let albedo = sigma_s / sigma_t;
         let sigma_tr = (3.0 * self.absorption * sigma_t).sqrt();
-        let z_b = 2.0 * (1.0 + r_i) / (1.0 - r_i) / (3.0 * sigma_t);
+        let beyond = 1.0656 - r_i * (0.565 - 0.544 * r_i);
+        let z_b = 2.0 * beyond * (1.0 + r_i) / (1.0 - r_i) / (3.0 * sigma_t);
         let l = self.thickness + 2.0 * z_b;
-        let a = (inner / sigma_t).min(self.thickness);
+        let source = (0.6230 + 0.196 * r_i + 0.958 * (inner - 2.0 / 3.0)).max(0.0);
+        let a = (source / sigma_t).min(self.thickness);
         let b = a + 2.0 * z_b;
         let reflected = |k: f64| sinh_ratio(sigma_tr, k, l);
         let reflected = 0.5 * albedo * (reflected(l - a) + reflected(l - b));
@@ -128,33 +134,40 @@ impl Slab {
         }
     }
 
+    /// σa/(σa + σs′).
+    fn absorbed(&self) -> f64 {
+        let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
+        self.absorption / (self.absorption + sigma_s)
+    }
+
     /// Share of the light that has entered which comes back, both boundaries included: that of
     /// [`Self::with_boundaries`], less what diffusion gives too much where absorption is strong.
     ///
-    /// The walk finds (n = 1.5, α = .6, σs 81.38, d .15, g 1/3) 1.0, .97 and .87 of diffusion's
-    /// reflectance for σa = 1, 2 and 5 mm⁻¹, where σa/(σa + σs′) is .018, .036 and .084.
+    /// Fitted to walks (n 1.3, 1.5 and 1.7; σs 40, 81.38 and 150 mm⁻¹ with g 0, 1/3 and .7; d .05
+    /// to .3 mm; σa to 5 mm⁻¹; light at 0 and 60°): within .45% (RMS) to σa = 1, .9% over all.
     pub fn reflectance(&self, r_i: f64, inner: f64) -> f64 {
-        const STRENGTH: f64 = 2.35;
-        const ONSET: f64 = 0.03;
-        let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
-        let absorbed = self.absorption / (self.absorption + sigma_s);
+        const ONSET: f64 = 6.7e-4;
+        let absorbed = self.absorbed();
+        let strength = 15.66 * r_i.powf(3.77) * (1.0 - 0.487 * (inner - 2.0 / 3.0));
         let (reflected, _) = self.with_boundaries(r_i, inner);
-        reflected * (-STRENGTH * absorbed * absorbed / (absorbed + ONSET)).exp()
+        reflected * (-strength * absorbed * absorbed / (absorbed + ONSET)).exp()
     }
 
     /// Share of the light that has entered which comes through, both boundaries included: that of
-    /// [`Self::with_boundaries`], and what the walk finds more of where a little is absorbed.
+    /// [`Self::with_boundaries`], and what walks find more of where a little is absorbed, and less
+    /// where much is.
     ///
-    /// The walk finds (n = 1.5, α = .6, σs 81.38, g 1/3; d .1 to .3, against itself without
-    /// absorption) 1.01, 1.02, 1.02 and .98 of diffusion's transmittance where σa/(σa + σs′) is
-    /// .0055, .018, .036 and .084.
+    /// Fitted to the walks of [`Self::reflectance`], and then to what passes sheets that are known by
+    /// their photograph (n = 1.5, α .4 and .6, σa .05 to 2.5 mm⁻¹): within 1.4% (d .165 mm) and 2.5% (.05).
     pub fn transmittance(&self, r_i: f64, inner: f64) -> f64 {
-        const STRENGTH: f64 = 3.0;
-        const RANGE: f64 = 0.022;
-        let sigma_s = (1.0 - self.phase.mean_cosine()) * self.scattering;
-        let absorbed = self.absorption / (self.absorption + sigma_s);
-        let (_, transmitted) = self.with_boundaries(r_i, inner);
-        transmitted * (1.0 + STRENGTH * absorbed * (-absorbed / RANGE).exp())
+        const MORE: f64 = 1.9;
+        const RANGE: f64 = 0.021;
+        const LESS: f64 = 33.3;
+        let absorbed = self.absorbed();
+        let (reflected, transmitted) = self.with_boundaries(r_i, inner);
+        let more = MORE * absorbed * (-absorbed / RANGE).exp();
+        let less = LESS * r_i.powi(7) * absorbed;
+        (transmitted * (more - less).exp()).min(1.0 - reflected)
     }
 
     /// The same slab with the absorption that makes it, over a back boundary of reflectance
@@ -222,25 +235,39 @@ mod tests {
     }
 
     #[test]
-    fn closed_form_gives_the_published_figures() {
-        // OPTICS.md, "Paper slab": closed form per unit of flux entered times T(1) = .96. The
-        // mean cosine and the thin sheet's σa are not printed there; 1/3 and .01 give all.
+    fn the_design_s_walks_are_met() {
+        // OPTICS.md, "Paper slab": what walks gave per unit of flux (T(1) = .96). The mean cosine
+        // and the thin sheet's σa are not printed there; 1/3 and .01 give its closed forms, the
+        // best of which for a thin sheet, .477/.476, is off by .021.
+        const OFF: f64 = 0.0125;
         let phase = Phase {
             forward_share: 1.0,
             g_forward: 1.0 / 3.0,
             g_backward: 0.0,
         };
         for (slab, reflected, transmitted) in [
-            (slab(81.38, 0.0, 0.262), 0.781, 0.179),
-            (slab(81.38, 0.05, 0.262), 0.745, 0.153),
-            (slab(81.38, 0.5, 0.262), 0.570, 0.052),
-            (slab(20.0, 0.01, 0.15), 0.477, 0.476),
-            (slab(40.0, 0.4, 0.15), 0.473, 0.264),
+            (slab(81.38, 0.0, 0.262), 0.786, 0.173),
+            (slab(81.38, 0.05, 0.262), 0.752, 0.150),
+            (slab(81.38, 0.5, 0.262), 0.572, 0.053),
+            (slab(20.0, 0.01, 0.15), 0.456, 0.497),
+            (slab(40.0, 0.4, 0.15), 0.464, 0.273),
         ] {
-            let (x, t) = Slab { phase, ..slab }.with_boundaries(R_I, 1.0);
-            // Printed to three places.
-            assert!((0.96 * x - reflected).abs() < 1e-3, "{slab:?}: {x} {t}");
-            assert!((0.96 * t - transmitted).abs() < 1e-3, "{slab:?}: {x} {t}");
+            let slab = Slab { phase, ..slab };
+            let (x, t) = (slab.reflectance(R_I, 1.0), slab.transmittance(R_I, 1.0));
+            assert!((0.96 * x - reflected).abs() < OFF, "{slab:?}: {x} {t}");
+            assert!((0.96 * t - transmitted).abs() < OFF, "{slab:?}: {x} {t}");
+        }
+    }
+
+    #[test]
+    fn without_boundaries_transport_theory_is_met() {
+        // T = (4/3)/(τ + 2 · .7104) for diffuse light on a slab that absorbs nothing.
+        for tau in [2.0, 8.0, 30.0] {
+            let (_, t) = slab(10.0, 0.0, tau / 10.0).with_boundaries(0.0, 2.0 / 3.0);
+            let exact = 4.0 / 3.0 / (tau + 1.4208);
+            assert!((t / exact - 1.0).abs() < 1e-3, "{tau}: {t} {exact}");
+            let plain = 4.0 / 3.0 / (tau + 4.0 / 3.0);
+            assert!((plain / exact - 1.0).abs() > 2e-3);
         }
     }
 

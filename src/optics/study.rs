@@ -67,7 +67,7 @@ pub struct Through {
     pub transmitted: DVec3,
     /// Optical thickness σt·d of the paper: light that is not scattered at all.
     pub ballistic: DVec3,
-    /// −dR0/dμ′ and dT0/dμ′ by the mean cosine of light that enters.
+    /// −dR0/dμ′ and d ln T0/dμ′ by the mean cosine of light that enters.
     pub reflected_leaning: DVec3,
     pub transmitted_leaning: DVec3,
     /// Mean share of what has entered that goes straight through.
@@ -193,28 +193,32 @@ pub const LOST_DEPTH: f64 = 1.0 / 6.0;
 /// Mean cosine of diffuse light within.
 pub const DIFFUSE_COSINE: f64 = 2.0 / 3.0;
 
+/// Share of ρ by which the paper's own light is returned from its boundary: it comes up a little
+/// steeper than a perfect diffuser's. Found by walks through sheets that absorb nothing, with ink of
+/// τ 0 to 2 on either side and both (n = 1.5, α = .4, d .05 and .165 mm, light at 0 and 60°): all
+/// within 4.7%, with 1 within 8.9%.
+pub const KEPT_WITHIN: f64 = 0.973;
+
 /// What crosses the paper between two boundaries of internal reflectances ρ_f, before it, and ρ_b,
 /// behind it, over n², all passes counted (Williams & Clapper's sum for two sides), for light
 /// that enters behind and leaves before at the mean cosines `m_b` and `m_f` within: of
 ///
 /// T0/[(1 − R0ρ_f)(1 − R0ρ_b) − T0²ρ_fρ_b]
 ///
-/// the first and the last pass are not those of diffuse light, as what enters steeply goes deeper.
-/// What leaves is the same whatever its direction, so only half of what the mean of entering light
-/// has over diffuse light counts at either side.
+/// the first and the last pass are not those of diffuse light, as what enters steeply goes deeper,
+/// and by reciprocity what leaves steeply came from there.
 pub fn crossing(through: &Through, seen: &Seen, m_f: f64, m_b: DVec3, eta: f64) -> DVec3 {
     // What crosses more is reflected less.
     let t = (through.transmitted * seen.clear).min(through.reflected + through.transmitted);
     let r = through.reflected + through.transmitted - t;
-    let (rho_f, rho_b) = (seen.rho_f, seen.rho_b);
-    let passed = through.transmitted_leaning * seen.clear;
-    let returned = through.reflected_leaning * t * seen.clear;
-    let even = 0.5 * (through.inner_mean + DIFFUSE_COSINE);
-    let before = (passed * (1.0 - r * rho_f) - returned * rho_f) * (m_f - even);
-    let behind = (passed * (1.0 - r * rho_b) - returned * rho_b) * (m_b - even);
+    let (rho_f, rho_b) = (KEPT_WITHIN * seen.rho_f, KEPT_WITHIN * seen.rho_b);
+    let returned = through.reflected_leaning * seen.clear;
+    let steeper = |rho: DVec3, m: DVec3| {
+        let leaning = through.transmitted_leaning * (1.0 - r * rho) - returned * rho;
+        (1.0 + leaning * (m - DIFFUSE_COSINE)).max(DVec3::ZERO)
+    };
     let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
-    let crossed = (t + before + behind).max(DVec3::ZERO);
-    crossed / (eta * eta * passes.max(DVec3::splat(1e-6)))
+    t * steeper(rho_f, DVec3::splat(m_f)) * steeper(rho_b, m_b) / (eta * eta * passes)
 }
 
 /// Henyey & Greenstein's phase function in sr⁻¹ at the cosine of the deflection.
@@ -383,13 +387,15 @@ impl Through {
         let ballistic = per_channel(slabs, |slab| {
             (slab.scattering + slab.absorption) * slab.thickness
         });
+        let transmitted = per_channel(slabs, |slab| free(slab, DIFFUSE_COSINE).1);
+        let leaning = slope(slabs, |slab, inner| free(slab, inner).1);
         let mut through = Self {
             reflected: per_channel(slabs, |slab| free(slab, DIFFUSE_COSINE).0),
             inner_mean,
-            transmitted: per_channel(slabs, |slab| free(slab, DIFFUSE_COSINE).1),
+            transmitted,
             ballistic,
             reflected_leaning: -slope(slabs, |slab, inner| free(slab, inner).0),
-            transmitted_leaning: slope(slabs, |slab, inner| free(slab, inner).1),
+            transmitted_leaning: leaning / transmitted.max(DVec3::splat(1e-30)),
             straight_mean: directions
                 .iter()
                 .map(|(mu, weight, path)| {
@@ -407,14 +413,18 @@ impl Through {
             rho_f: DVec3::splat(r_i),
             rho_b: DVec3::splat(r_i),
         };
-        // Where absorption is strong, the adding of diffuse passes loses some of what diffusion
-        // between the boundaries lets through.
-        let steps = crossing(&through, &bare, inner_mean, DVec3::splat(inner_mean), eta);
+        // The adding of diffuse passes is near what diffusion between the boundaries lets through;
+        // what crosses more is reflected less.
+        const ROUNDS: u32 = 6;
         let whole = per_channel(slabs, |slab| slab.transmittance(r_i, inner_mean));
-        let gain = whole / (steps * mean.t_mean).max(DVec3::splat(1e-30));
-        let gain = gain.clamp(DVec3::splat(0.5), DVec3::splat(2.0));
-        through.transmitted *= gain;
-        through.transmitted_leaning *= gain;
+        for _ in 0..ROUNDS {
+            let inner = DVec3::splat(inner_mean);
+            let steps = crossing(&through, &bare, inner_mean, inner, eta);
+            let gain = whole / (steps * mean.t_mean).max(DVec3::splat(1e-30));
+            let gain = gain.clamp(DVec3::splat(0.5), DVec3::splat(2.0));
+            through.reflected -= through.transmitted * (gain - 1.0);
+            through.transmitted *= gain;
+        }
         through.flat_share = whole * mean.t_mean;
         through
     }

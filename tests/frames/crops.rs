@@ -86,16 +86,6 @@ fn at_judged(picture: &Picture) -> Vec<[f64; 3]> {
     judged().into_iter().map(pixel).collect()
 }
 
-/// Where study misses the bounds, with the mean and the 99th percentile measured. All may
-/// only get better. The causes are not known: raking, the mean is met and a few pixels of 256 are far
-/// off.
-const MISSED: [(&str, &str, f64, f64); 2] = [
-    ("raking", "stylus", 0.49, 10.43),
-    ("light-table", "paper", 0.70, 1.45),
-];
-/// From one driver to another.
-const SPREAD: f64 = 1.05;
-
 #[test]
 fn tiers_against_the_walk() {
     let truths = fixture();
@@ -134,16 +124,7 @@ fn tiers_against_the_walk() {
                         let mean = room(STUDY_MEAN, found.noise);
                         // Of Gaussian noise, 1% is beyond 2.58 deviations.
                         let p99 = room(STUDY_P99, 2.58 * found.noise);
-                        let known = MISSED
-                            .iter()
-                            .find(|(of, at, ..)| (*of, *at) == (light, crop));
-                        if let Some((.., most_mean, most_p99)) = known {
-                            let within = found.mean <= mean && found.p99 <= p99;
-                            assert!(!within, "{light} {crop} is met: strike it off");
-                            let worse =
-                                found.mean > most_mean * SPREAD || found.p99 > most_p99 * SPREAD;
-                            assert!(!worse, "{light} {crop} is worse than it was");
-                        } else if found.mean > mean || found.p99 > p99 {
+                        if found.mean > mean || found.p99 > p99 {
                             missed.push(format!(
                                 "{light} {crop}: mean {:.2} of {mean:.2}, p99 {:.2} of {p99:.2}",
                                 found.mean, found.p99

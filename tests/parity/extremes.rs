@@ -17,8 +17,8 @@ use recto::{
         relief::{SHORTENING_NOISE, march_reach, mean_length, rise_of, slope_variance, widened},
         slab::Phase,
         study::{
-            Seen, Split, Through, crossing, phase_function, phase_lobe, single_scatter, split_even,
-            split_mean, split_shape,
+            KEPT_WITHIN, Seen, Split, Through, crossing, phase_function, phase_lobe,
+            single_scatter, split_even, split_mean, split_shape,
         },
         table::InterfaceTable,
         tier::{albedo_of, brdf_gallery_specular},
@@ -255,9 +255,10 @@ fn crossing_rounding(x: &[f64]) -> f64 {
     let t = (through.transmitted * seen.clear).min(through.reflected + through.transmitted);
     let r = through.reflected + through.transmitted - t;
     let (f, b) = (seen.rho_f, seen.rho_b);
-    let passes = ((1.0 - r * f) * (1.0 - r * b) - t * t * f * b).max(DVec3::splat(1e-6));
-    let leaning = (through.transmitted_leaning + through.reflected_leaning) * seen.clear;
-    let terms = through.reflected + through.transmitted + 4.0 * leaning;
+    let (f, b) = (KEPT_WITHIN * f, KEPT_WITHIN * b);
+    let passes = (1.0 - r * f) * (1.0 - r * b) - t * t * f * b;
+    let most = 1.0 + 2.0 * (through.transmitted_leaning + through.reflected_leaning * seen.clear);
+    let terms = t * most * most;
     let crossed = crossing(&through, &seen, x[19], DVec3::splat(x[20]), x[21]);
     let rounded = terms / (x[21] * x[21] * passes) + crossed / passes;
     rounded.max_element() * 2.0 * UNIT_PRODUCT

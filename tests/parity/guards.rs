@@ -48,7 +48,7 @@ const DISC: Comparator = |gpu, text| compare_lamps(gpu, text, Lamps::Disc);
 const IES: Comparator = |gpu, text| compare_lamps(gpu, text, Lamps::Ies);
 const CONDUCTORS: Comparator = |gpu, text| conductors().compare(gpu, text);
 
-const GUARDS: [Guard; 35] = [
+const GUARDS: [Guard; 34] = [
     Guard(
         1,
         "facing",
@@ -83,13 +83,6 @@ const GUARDS: [Guard; 35] = [
         "max(a + c, vec3(1e-6))",
         "(a + c)",
         CONDUCTORS,
-    ),
-    Guard(
-        2,
-        "crossing",
-        "max(passes, vec3(1e-6))",
-        "passes",
-        compare_ink,
     ),
     Guard(
         2,

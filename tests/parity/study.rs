@@ -306,8 +306,9 @@ fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVe
 /// the rounding of each.
 fn crossing_rounding(x: &[f64], study: &Study) -> f64 {
     let through = &study.through;
-    let leaning = through.transmitted_leaning.abs() + through.reflected_leaning.abs();
-    let terms = through.reflected + through.transmitted + 4.0 * leaning * x[14];
+    let returned = through.reflected_leaning.abs() * x[14];
+    let most = 1.0 + 2.0 * (through.transmitted_leaning.abs() + returned);
+    let terms = through.reflected + through.transmitted * most * most;
     let capture = DVec4::from_slice(&x[PATHS..]);
     let depth = optical_depth(&study.film, capture, DVec3::from_slice(&x[8..]));
     let dimmed = terms * crossed(DVec4::from_slice(&x[PATHS + 8..]), depth);
