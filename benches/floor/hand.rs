@@ -22,10 +22,7 @@ use bevy::{
 };
 use recto::{
     cost::{CostError, sheet},
-    sheet::{
-        PaperMaterial,
-        uniform::{FilmUniform, PaperUniform, SplitUniform},
-    },
+    sheet::{PaperMaterial, uniform::PaperUniform},
 };
 
 const PATH: &str = "recto/hand.wgsl";
@@ -48,8 +45,6 @@ struct HandUniform {
     lit_bare: Vec3,
     table: Vec3,
     size: Vec2,
-    film: FilmUniform,
-    split: SplitUniform,
 }
 
 /// Registers the shader and its material.
@@ -113,8 +108,6 @@ impl AsBindGroup for Hand {
             lit_bare: paper.lit_bare,
             table: paper.table,
             size: paper.size,
-            film: paper.film,
-            split: paper.split,
         };
         let mut uniform = UniformBuffer::new(Vec::new());
         if uniform.write(&hand).is_err() {

@@ -22,8 +22,6 @@ struct Hand {
     lit_bare: vec3<f32>,
     table: vec3<f32>,
     size: vec2<f32>,
-    film: Film,
-    split: Split,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> hand: Hand;
@@ -44,8 +42,13 @@ fn vertex(@location(0) local: vec3<f32>, @location(1) side: vec2<f32>) -> Varyin
     return Varyings(hand.clip_from_local * vec4(local, 1.0), side, uv);
 }
 
-fn texel(x: i32) -> vec4<f32> {
+// What the side is made of, and what it does at its roughness.
+fn made_of(x: i32) -> vec4<f32> {
     return textureLoad(rows, vec2(x, 0), 0);
+}
+
+fn texel(x: i32) -> vec4<f32> {
+    return textureLoad(rows, vec2(x, 1), 0);
 }
 
 @fragment
@@ -74,11 +77,25 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if l.z > 0.0 {
         let paper = albedo_of(s, mean);
         let capture = texel(5);
-        let depth = optical_depth(hand.film, capture, paper / hand.lit_bare);
+        let none = array<vec4<f32>, 7>();
+        let film = Film(
+            array<vec4<f32>, 7>(
+                made_of(0), made_of(1), made_of(2), made_of(3), made_of(4), made_of(5), made_of(6),
+            ),
+            none, vec4(0.0),
+        );
+        let k = made_of(15);
+        let q = made_of(16);
+        let e = made_of(17);
+        let r = made_of(19);
+        let split = Split(
+            k.xyz, k.w, q.xyz, q.w, e.xyz, e.w, r.x, r.y, made_of(18), r.z, r.w, made_of(20).x,
+        );
+        let depth = optical_depth(film, capture, paper / hand.lit_bare);
         let ways = Ways(capture, path_at(paths, l.z, b.w), path_at(paths, v.z, b.w));
         let f = brdf_study(
             s, facing(n, l, v), interface_at(row, l.z), interface_at(row, max(v.z, MU_MIN)), mean,
-            hand.split, depth, ways, paper, 1.0,
+            split, depth, ways, paper, 1.0,
         );
         radiance = f * hand.light * l.z;
     }
