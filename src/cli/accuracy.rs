@@ -11,7 +11,7 @@ use crate::{
     needs::Needs,
     optics::tier::Tier,
     tradeoff::{
-        choice::{self, Costs, LADDER},
+        choice::{self, Costs, LADDER, MARGIN},
         places::{MapFault, Maps},
         scene::{Sampled, WIDTH_PX, is_flattened},
         table::Table,
@@ -70,6 +70,8 @@ pub enum Detail {
 pub struct SceneAccuracy {
     /// The cheapest tier that keeps the bound, or the nearest to the reference.
     pub tier: &'static str,
+    #[serde(skip)]
+    pub chosen: Tier,
     /// Whether it keeps it.
     pub kept: bool,
     pub max_delta_e: f64,
@@ -140,6 +142,7 @@ impl SceneAccuracy {
         }
         Ok(Self {
             tier: tier.name(),
+            chosen: tier,
             kept,
             max_delta_e,
             places: sampled.count(),
@@ -210,6 +213,12 @@ impl Display for SceneAccuracy {
         }
         if !f.alternate() {
             return Ok(());
+        }
+        if self.kept {
+            write!(
+                f,
+                ", which {MARGIN} times over keeps it, as predictions err"
+            )?;
         }
         let ladder = |report: &&TierReport| LADDER.iter().any(|tier| tier.name() == report.tier);
         for report in self.tiers.iter().filter(ladder) {

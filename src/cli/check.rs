@@ -70,7 +70,11 @@ fn report(arguments: &Arguments) -> Result<(Report, Vec<(String, Mask)>), Faults
     super::warn(&warnings);
     let mut photographs = Vec::new();
     let mut masks = Vec::new();
-    for photograph in exhibit.photographs() {
+    let all = exhibit.photographs();
+    let bar = output::progress(all.len() as u64);
+    for photograph in all {
+        bar.set_message(format!("{}: read as a photograph", photograph.name()));
+        bar.tick();
         let path = &photograph.albedo.file.path;
         let mask = photograph
             .mask()
@@ -79,7 +83,9 @@ fn report(arguments: &Arguments) -> Result<(Report, Vec<(String, Mask)>), Faults
         if arguments.masks.is_some() {
             masks.push((photograph.name(), mask));
         }
+        bar.inc(1);
     }
+    bar.finish_and_clear();
     let detail = if arguments.explain || arguments.json {
         Detail::Whole
     } else {

@@ -64,9 +64,12 @@ fn can_write_into(folder: &Path) -> Result<(), Failure> {
     if !folder.is_dir() {
         return Err(refused(folder, "is not a folder"));
     }
-    tempfile::tempfile_in(folder)
-        .map(drop)
-        .map_err(|error| refused(folder, &format!("cannot be written to: {error}")))
+    tempfile::tempfile_in(folder).map(drop).map_err(|error| {
+        refused(
+            folder,
+            &format!("cannot be written to: {error}; choose another folder"),
+        )
+    })
 }
 
 fn refused(path: &Path, why: &str) -> Failure {

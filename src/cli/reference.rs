@@ -1,6 +1,6 @@
 //! `recto reference`
 
-use std::path::PathBuf;
+use std::path::{self, Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
@@ -105,6 +105,13 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     // The study tier asks for the most maps.
     let commission = arguments.pictures.commission(Tier::Study, true)?;
     if let Some(file) = &variance {
+        let whole = |path: &Path| path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        if whole(file) == whole(&commission.out) {
+            return Err(Failure::Usage(format!(
+                "--variance {}: --out names the same file; choose a file for each",
+                file.display()
+            )));
+        }
         output::can_write_file(file)?;
     }
     let exposure = Exposure {

@@ -11,7 +11,10 @@ use std::{
 use glam::DVec3;
 use serde::Serialize;
 
-use super::accuracy::{Detail, Prices, SceneAccuracy};
+use super::{
+    accuracy::{Detail, Prices, SceneAccuracy},
+    output,
+};
 use crate::{
     colour,
     manifest::{
@@ -21,12 +24,9 @@ use crate::{
         lighting::light_table_lux,
     },
     needs::Needs,
-    optics::tier::Tier,
     tradeoff::places::Maps,
 };
 
-/// The tier that requirements are told for, which is the one used where none is asked for.
-const TIER: Tier = Tier::Gallery;
 /// A faulty exhibit, for programs.
 #[derive(Serialize)]
 pub struct Refused<'f> {
@@ -52,7 +52,6 @@ pub struct Report {
     pub tours: usize,
     pub warnings: Vec<Fault>,
     pub photographs: Vec<PhotographReport>,
-    pub tier: &'static str,
     pub scenes: Vec<SceneReport>,
     pub sources: Vec<SourceReport>,
     pub not_shown_yet: Vec<String>,
@@ -87,7 +86,7 @@ impl PhotographReport {
     }
 }
 
-/// What one scene requires.
+/// What one scene requires of the tier that is named for it.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneReport {
     pub id: String,
@@ -162,11 +161,19 @@ impl Report {
         detail: Detail,
     ) -> Result<Self, Faults> {
         let mut maps = Maps::default();
+        let bar = output::progress(exhibit.scenes.len() as u64);
         let scenes: Result<Vec<SceneReport>, Faults> = exhibit
             .scenes
             .iter()
-            .map(|scene| SceneReport::new(exhibit, scene, prices, detail, &mut maps))
+            .map(|scene| {
+                bar.set_message(format!("{}: what each tier would err by", scene.id));
+                bar.tick();
+                let report = SceneReport::new(exhibit, scene, prices, detail, &mut maps);
+                bar.inc(1);
+                report
+            })
             .collect();
+        bar.finish_and_clear();
         let Accuracy {
             max_delta_e,
             frame_ms,
@@ -178,7 +185,6 @@ impl Report {
             tours: exhibit.tours.len(),
             warnings,
             photographs,
-            tier: TIER.name(),
             scenes: scenes?,
             sources: sources(exhibit),
             not_shown_yet: exhibit.not_shown_yet.clone(),
@@ -201,7 +207,8 @@ impl SceneReport {
     ) -> Result<Self, Faults> {
         let accuracy = SceneAccuracy::new(exhibit, scene, prices, detail, held)
             .map_err(|fault| exhibit.map_fault(&fault.path, &fault.error))?;
-        let needs = Needs::of(exhibit, scene, TIER, false);
+        let tier = accuracy.chosen;
+        let needs = Needs::of(exhibit, scene, tier, false);
         let maps = needs.sides.iter().flat_map(|side| {
             side.maps.iter().map(|map| MapReport {
                 side: side.side,
@@ -217,7 +224,7 @@ impl SceneReport {
             side: scene.side,
             maps: maps.collect(),
             gpu_bytes: needs.gpu_bytes(),
-            gpu_bytes_in_window: Needs::of(exhibit, scene, TIER, true).gpu_bytes(),
+            gpu_bytes_in_window: Needs::of(exhibit, scene, tier, true).gpu_bytes(),
             exposure: ExposureReport::new(exhibit, scene),
             reasons: needs.reasons,
             accuracy,

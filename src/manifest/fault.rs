@@ -162,6 +162,16 @@ pub fn did_you_mean<'w>(
     )
 }
 
+/// `what` with its article: "a lamp", "an overlay".
+pub fn one(what: &str) -> String {
+    let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {what}")
+}
+
 /// `"a", "b" or "c"`.
 pub fn quoted_list<'w>(words: impl IntoIterator<Item = &'w str>) -> String {
     let words: Vec<_> = words

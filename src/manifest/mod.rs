@@ -36,7 +36,7 @@ pub use create::{CreateError, create};
 pub use decode::{Brief, Dictionary, List, OfKind, OneOrMany, Pattern};
 pub use document::MANIFEST;
 pub use exhibit::*;
-pub use fault::{Fault, Faults, Place, Severity, did_you_mean, nearest, quote, quoted_list};
+pub use fault::{Fault, Faults, Place, Severity, did_you_mean, nearest, one, quote, quoted_list};
 pub use schema::schema;
 
 use decode::{Decode, Node, Report};

@@ -10,7 +10,7 @@ use toml::{Table, Value};
 use super::{
     Fault, Faults, did_you_mean,
     exhibit::{Camera, Drawing, Exhibit, Lamp, MAX_LAMPS, MAX_OVERLAYS, Scene, SideName},
-    frames, quote, quoted_list,
+    frames, one, quote, quoted_list,
     raw::{RawCamera, RawShownOverlay},
 };
 use crate::units::Degrees;
@@ -320,8 +320,8 @@ fn resolve<'i>(
 ) -> Result<usize, Vec<Fault>> {
     ids.clone().position(|known| known == id).ok_or_else(|| {
         let allowed = match ids.clone().next() {
-            Some(_) => format!("the id of a {what}: {}", quoted_list(ids.clone())),
-            None => format!("the id of a {what}, and there is none"),
+            Some(_) => format!("the id of {}: {}", one(what), quoted_list(ids.clone())),
+            None => format!("the id of {}, and there is none", one(what)),
         };
         let remedy = did_you_mean(id, ids, "correct it");
         vec![fault(option, quote(id), allowed, remedy)]

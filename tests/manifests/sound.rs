@@ -427,6 +427,22 @@ fn what_is_probably_not_meant_is_a_warning() {
           of the side that is shown"
         ]
     );
+    let near = |height: u32| {
+        format!(
+            "{SMALL}[[lamp]]\nid = \"panel\"\nkind = \"rectangle\"\nnits = 1000\nsize_mm = [350, 200]\n\
+             position_mm = [0, 0, {height}]\n"
+        )
+    };
+    assert_eq!(
+        warnings(&near(49)),
+        [
+            "exhibit.toml:8:1: warning: lamp[0]: found a lamp of 350 × 200 mm that comes as near as \
+             49 mm to the sheet; allowed: at least 50 mm, a 7th of its longer edge: nearer, the \
+             points that it is sampled at are seen; move the lamp away, or make several smaller ones \
+             of it"
+        ]
+    );
+    assert_eq!(warnings(&near(51)), [] as [&str; 0]);
 }
 
 #[test]

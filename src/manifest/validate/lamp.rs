@@ -8,7 +8,7 @@ use super::{
     super::{
         decode::{Brief, List, Pattern},
         document::{Trail, Words},
-        exhibit::{Lamp, LampColour, LampKind, Wording},
+        exhibit::{Exhibit, Lamp, LampColour, LampKind, Wording},
         raw::{
             RawManifest,
             lamp::{RawLamp, RawLampCommon, RawLampKind, RawSpectrum, Stand},
@@ -20,7 +20,7 @@ use super::{
     Validator,
 };
 use crate::{
-    optics::{lamp::DISTANCE2_MIN_MM2, lamp_units, spectrum},
+    optics::{lamp::DISTANCE2_MIN_MM2, lamp_units, quadrature::GRIDS, spectrum},
     units::{Candela, Degrees, Kelvin, Lux, Nits},
 };
 
@@ -171,6 +171,7 @@ impl Validator<'_, '_> {
                 let size_mm = DVec2::from(lamp.size_mm.map(|mm| mm.0));
                 let position_mm = self.stand(&lamp.stand(), trail)?;
                 let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
+                self.clear_of_the_sheet(position_mm, aim_mm, size_mm.y, trail)?;
                 let form = lamp_units::rectangle_form(position_mm, aim_mm, size_mm, DVec3::ZERO);
                 let light = (lamp.lux_at_sheet, lamp.nits, flux!(lamp));
                 let luminance = self.luminance(light, form, size_mm.x * size_mm.y, trail)?;
@@ -185,6 +186,7 @@ impl Validator<'_, '_> {
                 let diameter_mm = lamp.diameter_mm.0;
                 let position_mm = self.stand(&lamp.stand(), trail)?;
                 let aim_mm = self.aim(lamp.aim_mm, position_mm, trail)?;
+                self.clear_of_the_sheet(position_mm, aim_mm, diameter_mm, trail)?;
                 let form = lamp_units::disc_form(position_mm, aim_mm, diameter_mm, DVec3::ZERO);
                 let area = std::f64::consts::PI * diameter_mm * diameter_mm / 4.0;
                 let light = (lamp.lux_at_sheet, lamp.nits, flux!(lamp));
@@ -232,6 +234,90 @@ impl Validator<'_, '_> {
         let distance = stand.distance_mm.map_or(DEFAULT_DISTANCE_MM, |mm| mm.0);
         let (sin, cos) = elevation.sin_cos();
         Some(DVec3::new(cos * azimuth.cos(), cos * azimuth.sin(), sin) * distance)
+    }
+
+    /// Finds out whether a flat lamp, so high across its horizontal edge, ends above the plane of the
+    /// sheet.
+    fn clear_of_the_sheet(
+        &mut self,
+        position: DVec3,
+        aim: DVec3,
+        height_mm: f64,
+        trail: &Trail,
+    ) -> Option<()> {
+        let [_, up, _] = lamp_units::area_axes(position, aim)?;
+        let lowest = position.z - 0.5 * height_mm * up.z.abs();
+        if lowest >= LOWEST_MM {
+            return Some(());
+        }
+        let found = if lowest < 0.0 {
+            format!(
+                "a lamp that reaches {:.1} mm below the plane of the sheet",
+                -lowest
+            )
+        } else {
+            format!("a lamp that ends {lowest:.1} mm above the plane of the sheet")
+        };
+        let allowed = format!("all of it at least {LOWEST_MM} mm above");
+        let words = Words::new(found, allowed, "raise the lamp or make it smaller");
+        self.report.fault(trail, words);
+        None
+    }
+
+    /// Warns of flat lamps so near to a sheet that the points they are sampled at are seen.
+    pub(super) fn near_lamps(&mut self, exhibit: &Exhibit, trail: &Trail) {
+        /// Points are this many along an edge, and light from one of them is wrong nearer than
+        /// they are to each other.
+        const POINTS: f64 = *GRIDS.end() as f64;
+        for (i, lamp) in exhibit.lamps.iter().enumerate() {
+            let (position, aim, size) = match lamp.kind {
+                LampKind::Rectangle {
+                    position_mm,
+                    aim_mm,
+                    size_mm,
+                    ..
+                } => (position_mm, aim_mm, size_mm),
+                LampKind::Disc {
+                    position_mm,
+                    aim_mm,
+                    diameter_mm,
+                    ..
+                } => (position_mm, aim_mm, DVec2::splat(diameter_mm)),
+                _ => continue,
+            };
+            let Some([across, up, _]) = lamp_units::area_axes(position, aim) else {
+                continue;
+            };
+            let lit = exhibit.scenes.iter().filter(|s| s.lamps.contains(&i));
+            let nearest = lit
+                .map(|scene| {
+                    let half = exhibit.drawing_of(scene).size_mm / 2.0;
+                    let places = (0..=8).flat_map(|u| (0..=8).map(move |v| [u, v]));
+                    let distances = places.map(|place| {
+                        let [u, v] = place.map(|k| f64::from(k) / 8.0 - 0.5);
+                        let p = position + across * (u * size.x) + up * (v * size.y);
+                        let on_sheet = p.truncate().clamp(-half, half);
+                        p.distance(on_sheet.extend(0.0))
+                    });
+                    distances.fold(f64::INFINITY, f64::min)
+                })
+                .fold(f64::INFINITY, f64::min);
+            let least = size.max_element() / POINTS;
+            if nearest < least {
+                let words = Words::new(
+                    format!(
+                        "a lamp of {} × {} mm that comes as near as {nearest:.0} mm to the sheet",
+                        size.x, size.y
+                    ),
+                    format!(
+                        "at least {least:.0} mm, a {POINTS}th of its longer edge: nearer, the \
+                         points that it is sampled at are seen"
+                    ),
+                    "move the lamp away, or make several smaller ones of it",
+                );
+                self.report.warn(&trail.index(i), words);
+            }
+        }
     }
 
     fn aim(

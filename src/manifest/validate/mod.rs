@@ -113,7 +113,7 @@ impl Validator<'_, '_> {
         let scenes = self.scenes(raw, &root, &drawing_names, &lamp_names, &scene_names);
         let tours = self.tours(raw, &root.key("tour"), &scene_names);
         let accuracy = raw.accuracy.as_ref();
-        Some(Exhibit {
+        let exhibit = Exhibit {
             folder: self.folder.clone(),
             manifest: manifest.to_owned(),
             title,
@@ -128,7 +128,9 @@ impl Validator<'_, '_> {
                 frame_ms: accuracy.and_then(|a| a.frame_ms).map_or(16.0, |ms| ms.0),
             },
             not_shown_yet: std::mem::take(&mut self.not_shown_yet),
-        })
+        };
+        self.near_lamps(&exhibit, &root.key("lamp"));
+        Some(exhibit)
     }
 
     fn not_shown_yet(&mut self, sentence: String) {

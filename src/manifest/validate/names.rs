@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::super::{
     decode::Pattern,
     document::{Trail, Words},
-    fault::{did_you_mean, quoted_list},
+    fault::{did_you_mean, one, quoted_list},
     raw::values::Id,
 };
 use super::Validator;
@@ -120,13 +120,13 @@ impl Validator<'_, '_> {
     pub(super) fn resolve(&mut self, id: &str, names: &Names, trail: &Trail) -> Option<usize> {
         let index = names.position(id);
         if index.is_none() && !names.incomplete && !self.report.is_full() {
-            let what = names.what;
+            let what = one(names.what);
             let allowed = if names.ids.is_empty() {
-                format!("the id of a {what}, and there is none")
+                format!("the id of {what}, and there is none")
             } else {
-                format!("the id of a {what}: {}", names.listed())
+                format!("the id of {what}: {}", names.listed())
             };
-            let otherwise = format!("add a {what} with this id or correct it");
+            let otherwise = format!("add {what} with this id or correct it");
             let remedy = did_you_mean(id, names.words(), &otherwise);
             self.report
                 .fault(trail, Words::new(format!("\"{id}\""), allowed, remedy));
