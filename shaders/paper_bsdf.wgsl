@@ -306,38 +306,8 @@ struct Split {
     g_backward: f32,
 }
 
-struct Through {
-    reflected: vec3<f32>,
-    inner_mean: f32,
-    transmitted: vec3<f32>,
-    ballistic: vec3<f32>,
-    reflected_leaning: vec3<f32>,
-    transmitted_leaning: vec3<f32>,
-    straight_mean: vec3<f32>,
-    flat_share: vec3<f32>,
-    toned: array<vec3<f32>, 5>,
-    lightest: vec3<f32>,
-}
-
-const TONE_MIN: f32 = 0.1;
-const TONE_LOG_MAX: f32 = 20.0;
 const DIFFUSE_COSINE: f32 = 0.66666666666667;
-const KEPT_WITHIN: f32 = 0.973;
 const LOST_DEPTH: f32 = 0.16666666666667;
-
-fn crossing(through: Through, seen: Seen, m_f: f32, m_b: vec3<f32>, eta: f32) -> vec3<f32> {
-    let t = min(through.transmitted * seen.clear, through.reflected + through.transmitted);
-    let r = through.reflected + through.transmitted - t;
-    let rho_f = KEPT_WITHIN * seen.rho_f;
-    let rho_b = KEPT_WITHIN * seen.rho_b;
-    let returned = through.reflected_leaning * seen.clear;
-    let leaning_f = through.transmitted_leaning * (1.0 - r * rho_f) - returned * rho_f;
-    let leaning_b = through.transmitted_leaning * (1.0 - r * rho_b) - returned * rho_b;
-    let steeper_f = max(1.0 + leaning_f * (m_f - DIFFUSE_COSINE), vec3(0.0));
-    let steeper_b = max(1.0 + leaning_b * (m_b - DIFFUSE_COSINE), vec3(0.0));
-    let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
-    return t * steeper_f * steeper_b / (eta * eta * passes);
-}
 
 fn phase_lobe(g: f32, cos_deflection: f32) -> f32 {
     // 1 + g² − 2g cosΘ, which would cancel in the lobe's peak.
@@ -428,6 +398,39 @@ fn brdf_study_diffuse(
     let through_ink = beyond_capture(depth, ways.capture, ways.path_i, ways.path_o);
     let coupled = at_i.t * at_o.t * mean.capture;
     return paper * coupled * through_ink * shape * INV_PI;
+}
+
+// Twins of src/optics/through.rs
+
+struct Through {
+    reflected: vec3<f32>,
+    inner_mean: f32,
+    transmitted: vec3<f32>,
+    ballistic: vec3<f32>,
+    reflected_leaning: vec3<f32>,
+    transmitted_leaning: vec3<f32>,
+    straight_mean: vec3<f32>,
+    flat_share: vec3<f32>,
+    toned: array<vec3<f32>, 5>,
+    lightest: vec3<f32>,
+}
+
+const TONE_MIN: f32 = 0.1;
+const TONE_LOG_MAX: f32 = 20.0;
+const KEPT_WITHIN: f32 = 0.973;
+
+fn crossing(through: Through, seen: Seen, m_f: f32, m_b: vec3<f32>, eta: f32) -> vec3<f32> {
+    let t = min(through.transmitted * seen.clear, through.reflected + through.transmitted);
+    let r = through.reflected + through.transmitted - t;
+    let rho_f = KEPT_WITHIN * seen.rho_f;
+    let rho_b = KEPT_WITHIN * seen.rho_b;
+    let returned = through.reflected_leaning * seen.clear;
+    let leaning_f = through.transmitted_leaning * (1.0 - r * rho_f) - returned * rho_f;
+    let leaning_b = through.transmitted_leaning * (1.0 - r * rho_b) - returned * rho_b;
+    let steeper_f = max(1.0 + leaning_f * (m_f - DIFFUSE_COSINE), vec3(0.0));
+    let steeper_b = max(1.0 + leaning_b * (m_b - DIFFUSE_COSINE), vec3(0.0));
+    let passes = (1.0 - r * rho_f) * (1.0 - r * rho_b) - t * t * rho_f * rho_b;
+    return t * steeper_f * steeper_b / (eta * eta * passes);
 }
 
 fn toned_paper(through: Through, share: vec3<f32>) -> vec3<f32> {

@@ -28,8 +28,9 @@ use recto::{
         microfacet::v_smith,
         refraction::PathTable,
         slab::{Phase as TierPhase, Slab},
-        study::{Seen, Split, Study, Ways, brdf_study, phase_lobe, single_scatter, through_study},
+        study::{Split, Study, Ways, brdf_study, phase_lobe, single_scatter},
         table::{InterfaceMean, InterfaceTable},
+        through::{Seen, through_study},
         tier::{Surface, albedo_of, brdf_gallery, brdf_gallery_specular, capture_floor, facing},
     },
     reference::{
@@ -420,7 +421,7 @@ fn light_through_the_sheet_is_what_the_judge_finds() {
     let judge = Judge::read();
     // OPTICS asks 8% (opaque) and 15% (thin); here at normal incidence and at 60°, for ink on neither
     // side, the front and both.
-    for (sheet, bound) in [(OPAQUE, 0.03), (THIN, 0.03)] {
+    for (sheet, bound) in [(OPAQUE, 0.03), (THIN, 0.04)] {
         let photograph = |tau: f64| {
             let name = format!("photograph {} 0.4 {tau}", sheet.name);
             judge.get(&name).mean

@@ -20,8 +20,9 @@ use recto::{
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
         refraction::COSINE_MIN,
-        study::{DIFFUSE_COSINE, LOST_DEPTH, TONE_LOG_MAX, TONE_MIN, TONE_TERMS},
+        study::{DIFFUSE_COSINE, LOST_DEPTH},
         table::{ALPHA_FIT_MIN, LATE_TERMS, MU_TERMS},
+        through::{TONE_LOG_MAX, TONE_MIN, TONE_TERMS},
     },
     sheet::{
         PAPER_BASELINES, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA,

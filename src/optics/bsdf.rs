@@ -19,8 +19,9 @@ use super::{
     microfacet::MU_MIN,
     refraction::{PathTable, crossed},
     slab::{Phase, Slab, UM_PER_MM},
-    study::{Seen, Study, Ways, brdf_study, btdf_study},
+    study::{Study, Ways, brdf_study},
     table::{Interface, InterfaceTable},
+    through::{Seen, btdf_study},
     tier::{Facing, Surface, Tier, brdf_draft, brdf_gallery, brdf_lambert, facing},
 };
 use crate::units::Micrometres;

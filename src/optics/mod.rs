@@ -33,4 +33,5 @@ pub mod slab;
 pub mod spectrum;
 pub mod study;
 pub mod table;
+pub mod through;
 pub mod tier;

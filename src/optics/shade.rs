@@ -12,7 +12,8 @@ use super::{
     matter::{passing, uncovered_share, veiled},
     microfacet::MU_MIN,
     refraction::mean_inner_cosine,
-    study::{Seen, split_even, through_study, toned_paper},
+    study::split_even,
+    through::{Seen, through_study, toned_paper},
     tier::{Surface, Tier, albedo_of, brdf_lambert},
 };
 

@@ -14,8 +14,9 @@ use crate::{
         lamp::{DISTANCE2_MIN_MM2, Light, Shape},
         quadrature::{GAUSS_LEGENDRE, GRIDS, disc_spoke, gauss_legendre},
         refraction::{PATH_TERMS, PathRow},
-        study::{Split, TONE_TERMS, Through},
+        study::Split,
         table::{InterfaceMean, InterfaceRow, LATE_TERMS, MU_TERMS},
+        through::{TONE_TERMS, Through},
     },
 };
 pub use media::{MediaUniform, ParticleUniform};

@@ -15,8 +15,9 @@ use recto::optics::{
     medium::{Matter, MediumId},
     refraction::PathTable,
     slab::Slab,
-    study::{Seen, Study, Ways, brdf_study, btdf_study, through_study},
+    study::{Study, Ways, brdf_study},
     table::{InterfaceMean, InterfaceTable},
+    through::{Seen, btdf_study, through_study},
     tier::{Surface, albedo_of, capture_floor, facing},
 };
 

@@ -14,8 +14,9 @@ use recto::optics::{
     microfacet::{ALPHA_MIN, MU_MIN, d_ggx, v_smith},
     refraction::PathTable,
     slab::Slab,
-    study::{Seen, Through, crossing, phase_lobe},
+    study::phase_lobe,
     table::InterfaceTable,
+    through::{Seen, Through, crossing},
     tier::{Facing, Surface, facing},
 };
 

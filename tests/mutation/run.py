@@ -37,7 +37,7 @@ SHADERS = [f"shaders/paper_{name}.wgsl" for name in ("bsdf", "baselines", "media
 # Not medium.rs and medium/catalogue.rs, which are data. Arrays of numbers are left out below.
 SOURCES = [f"src/optics/{name}.rs" for name in (
     "baselines bsdf fresnel ink lamp lamp_units lobes matter microfacet photometry quadrature relief slab "
-    "refraction late shade spectrum study table tier").split()]
+    "refraction late shade spectrum study table through tier").split()]
 # Mutants that a test only notices by never ending are caught too.
 LONGEST_S = 600
 # A minute long, and what it sees the others see earlier.

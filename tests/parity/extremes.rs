@@ -17,10 +17,10 @@ use recto::{
         relief::{SHORTENING_NOISE, march_reach, mean_length, rise_of, slope_variance, widened},
         slab::Phase,
         study::{
-            KEPT_WITHIN, Seen, Split, Through, crossing, phase_function, phase_lobe,
-            single_scatter, split_even, split_mean, split_shape,
+            Split, phase_function, phase_lobe, single_scatter, split_even, split_mean, split_shape,
         },
         table::InterfaceTable,
+        through::{KEPT_WITHIN, Seen, Through, crossing},
         tier::{albedo_of, brdf_gallery_specular},
     },
     sheet::{PAPER_BASELINES, PAPER_MEDIA, uniform::FilmUniform},

@@ -9,10 +9,8 @@ use recto::{
         microfacet::{d_ggx_anisotropic, v_smith_anisotropic},
         refraction::{PathRow, PathTable, crossed, path_at, smooth_cosine},
         slab::{Phase, Slab},
-        study::{
-            Seen, Study, TONE_MIN, Through, Ways, brdf_study, brdf_study_diffuse, btdf_study,
-            through_study, toned_paper,
-        },
+        study::{Study, Ways, brdf_study, brdf_study_diffuse},
+        through::{Seen, TONE_MIN, Through, btdf_study, through_study, toned_paper},
         tier::albedo_of,
     },
     sheet::uniform::{FilmUniform, SplitUniform, ThroughUniform, narrow_paths},
