@@ -149,6 +149,11 @@ struct Paper {
     // From √α to a row of `rows`.
     row_scale: f32,
     row_offset: f32,
+    // Width over height of the whole picture, and what of it the side is seen in: as `Part` of
+    // src/manifest/comparison.rs.
+    picture_aspect: f32,
+    cut_circle: vec4<f32>,
+    cut_lines: array<vec4<f32>, 4>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paper: Paper;
@@ -218,6 +223,10 @@ struct Varyings {
     @location(3) normal: vec3<f32>,
     @location(4) tangent: vec3<f32>,
 #endif
+#ifdef CUT
+    // x, y and w of the clip space.
+    @location(5) seen: vec3<f32>,
+#endif
 }
 
 fn place_uv(place: MapPlace, side: vec2<f32>) -> vec2<f32> {
@@ -235,6 +244,9 @@ fn vertex(in: Vertex) -> Varyings {
 #ifdef CURVED
     out.normal = in.normal;
     out.tangent = in.tangent.xyz;
+#endif
+#ifdef CUT
+    out.seen = out.clip.xyw;
 #endif
     return out;
 }
@@ -254,6 +266,19 @@ fn edge_coverage(side: vec2<f32>) -> f32 {
     let steps = inside / max(fwidth(side), vec2(1e-6)) + 0.5;
     let covered = clamp(steps, vec2(0.0), vec2(1.0));
     return covered.x * covered.y;
+}
+#endif
+
+#ifdef CUT
+fn is_cut_away(seen: vec3<f32>) -> bool {
+    let place = seen.xy / seen.z;
+    var within = true;
+    for (var k = 0; k < 4; k++) {
+        within = within && dot(paper.cut_lines[k].xyz, vec3(place, 1.0)) >= 0.0;
+    }
+    let from_centre = (place - paper.cut_circle.xy) * vec2(paper.picture_aspect, 1.0);
+    let r = paper.cut_circle.z;
+    return !(within && paper.cut_circle.w * (r * r - dot(from_centre, from_centre)) >= 0.0);
 }
 #endif
 
@@ -430,6 +455,12 @@ fn march(l: vec3<f32>, rise: f32, side: vec2<f32>, width: f32) -> Horizon {
 
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+#ifdef CUT
+    // First, so that nothing is spent on what another member shows.
+    if is_cut_away(in.seen) {
+        discard;
+    }
+#endif
     // Every texture is read before anything branches; only the relief's heights are read at
     // levels of their own.
 #ifdef RELIEF_SHADOWS

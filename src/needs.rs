@@ -77,6 +77,8 @@ pub struct Terms {
     pub anisotropic: bool,
     /// How many overlays lie on the side.
     pub overlays: u32,
+    /// A comparison gives part of the picture to another member.
+    pub cut: bool,
 }
 
 /// A map with the property it is read for.

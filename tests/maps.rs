@@ -20,6 +20,8 @@ mod levels;
 mod matter;
 #[path = "maps/paper.rs"]
 mod paper;
+#[path = "maps/propose.rs"]
+mod propose;
 #[path = "maps/registration.rs"]
 mod registration;
 #[path = "support/show_through.rs"]

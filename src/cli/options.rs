@@ -34,6 +34,11 @@ pub struct SceneArguments {
     /// true-size@PPI, for a display of so many pixels per inch
     #[arg(long, value_name = "SPEC")]
     camera: Option<String>,
+    /// Members against each other, in the light and the camera of the scene: curtain, side-by-side,
+    /// loupe, blend or difference, a colon, and what is compared, such as
+    /// curtain:state:before,state:after,at=0.4; further keys as in a manifest
+    #[arg(long, value_name = "MODE:A,B")]
+    compare: Option<String>,
     /// The language of the legend, by its BCP 47 tag
     #[arg(long, value_name = "TAG")]
     language: Option<String>,
@@ -49,6 +54,7 @@ impl SceneArguments {
             overlays: self.overlay,
             lamps: self.lamp,
             camera: self.camera,
+            compare: self.compare,
             language: self.language,
         }
     }

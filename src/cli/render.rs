@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    Failure, later,
+    Failure,
     options::{self, SceneArguments},
     output,
 };
@@ -36,9 +36,6 @@ pub struct Pictures {
     exhibit: PathBuf,
     #[command(flatten)]
     scene: SceneArguments,
-    /// States, sides or overlays against each other (not in this version yet)
-    #[arg(long, value_name = "MODE:A,B")]
-    compare: Option<String>,
     /// Every scene of the exhibit, and a contact sheet of them
     #[arg(long, conflicts_with_all = ["scene", "drawing"])]
     all_scenes: bool,
@@ -96,9 +93,6 @@ impl Pictures {
     /// Reads and checks all there is to know before anything is rendered: every fault of options
     /// and exhibit, with `verify_maps` of the pictures too, and whether the files can be written.
     pub fn commission(self, tier: Tier, verify_maps: bool) -> Result<Commission, Failure> {
-        if self.compare.is_some() {
-            return Err(later::not_yet("--compare"));
-        }
         let (all, size, out) = (self.all_scenes, self.size, self.out);
         let format = if all { Format::Png } else { Format::of(&out)? };
         let exhibit = super::read(&self.exhibit)?;

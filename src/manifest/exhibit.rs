@@ -434,11 +434,41 @@ pub const MAX_LAMPS: usize = 8;
 /// How many overlays lie on one scene at once at most.
 pub const MAX_OVERLAYS: usize = 16;
 
-/// Members shown against each other. Validated, not shown yet.
+/// Members shown against each other, all in the same light and by the same eye.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     pub mode: CompareMode,
     pub of: Vec<Member>,
+    /// Where the curtain hangs, as a share of the way across the picture; how much of the second
+    /// member a blend shows.
+    pub at: f64,
+    /// The way across the curtain, anticlockwise from the right.
+    pub angle: Degrees,
+    /// The loupe's centre, from the left and top edges of the picture, as shares of its width and
+    /// height.
+    pub centre: DVec2,
+    /// Its radius as a share of the picture's height.
+    pub radius: f64,
+    /// How much larger it shows its member.
+    pub magnify: f64,
+    /// ΔE00 at which a difference is shown at the top of its scale.
+    pub full_delta_e: f64,
+}
+
+impl Comparison {
+    /// With the curtain in the middle, half of each member, and a loupe of a quarter of the height.
+    pub fn new(mode: CompareMode, of: Vec<Member>) -> Self {
+        Self {
+            mode,
+            of,
+            at: 0.5,
+            angle: Degrees(0.0),
+            centre: DVec2::splat(0.5),
+            radius: 0.25,
+            magnify: 2.0,
+            full_delta_e: 10.0,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

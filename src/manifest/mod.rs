@@ -14,6 +14,7 @@
 //! | a scene changed by options of a command | [`overrides`] |
 
 pub mod capture;
+pub mod comparison;
 mod create;
 mod decode;
 mod document;

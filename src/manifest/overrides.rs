@@ -8,10 +8,10 @@ use glam::DVec2;
 use toml::{Table, Value};
 
 use super::{
-    Fault, Faults, did_you_mean,
-    exhibit::{Camera, Drawing, Exhibit, Lamp, MAX_LAMPS, MAX_OVERLAYS, Scene, SideName},
+    Fault, Faults, Pattern, did_you_mean,
+    exhibit::{Camera, Drawing, Exhibit, Lamp, MAX_LAMPS, MAX_OVERLAYS, Member, Scene, SideName},
     frames, one, quote, quoted_list,
-    raw::{RawCamera, RawShownOverlay},
+    raw::{RawCamera, RawCompare, RawShownOverlay},
 };
 use crate::units::Degrees;
 use spec::{decode, fault, parts, table, validated, value};
@@ -42,6 +42,8 @@ pub struct Overrides {
     pub lamps: Vec<String>,
     /// `key=value,…` and `true-size@PPI`; keys that are not given stay as the scene has them.
     pub camera: Option<String>,
+    /// `MODE:A,B`, what follows as in a manifest: `curtain:state:before,state:after,at=0.4`.
+    pub compare: Option<String>,
     /// A BCP 47 tag.
     pub language: Option<String>,
 }
@@ -68,6 +70,9 @@ impl Overrides {
                 faults.extend(found);
             }
             self.choose_overlays(&mut scene, drawing, &mut faults);
+            if let Err(found) = self.choose_comparison(&mut scene, &exhibit, &mut faults) {
+                faults.extend(found);
+            }
             scene
         });
         match (scene, language, change, Faults::new(faults)) {
@@ -191,6 +196,51 @@ impl Overrides {
         lamps
     }
 
+    fn choose_comparison(
+        &self,
+        scene: &mut Scene,
+        exhibit: &Exhibit,
+        faults: &mut Vec<Fault>,
+    ) -> Result<(), Vec<Fault>> {
+        const OPTION: &str = "--compare";
+        let Some(spec) = &self.compare else {
+            return Ok(());
+        };
+        let Some((mode, rest)) = spec.split_once(':') else {
+            let allowed = "a mode, a colon and members";
+            let remedy = "write it like curtain:state:before,state:after";
+            return Err(vec![fault(OPTION, quote(spec), allowed, remedy)]);
+        };
+        let (keys, members): (Vec<&str>, Vec<&str>) = parts(rest).partition(|p| p.contains('='));
+        let mut written = table(OPTION, keys)?;
+        let members: Vec<Value> = members.into_iter().map(Value::from).collect();
+        written.insert("mode".to_owned(), mode.into());
+        written.insert("of".to_owned(), members.into());
+        let raw: RawCompare = decode(OPTION, written.into())?;
+        let drawing = &exhibit.drawings[scene.drawing];
+        let mut of = Vec::new();
+        for (i, text) in raw.of.iter() {
+            let option = format!("{OPTION}.of[{i}]");
+            match member(&option, text.as_str(), exhibit, drawing) {
+                Ok(member) if of.contains(&member) => faults.push(fault(
+                    &option,
+                    format!("{} a second time", quote(text.as_str())),
+                    "members that differ",
+                    "remove one of the two",
+                )),
+                Ok(member) => of.push(member),
+                Err(found) => faults.extend(found),
+            }
+        }
+        if let Some(allowed) = raw.mode.allowed_instead_of(raw.of.iter().count()) {
+            let found = format!("{} members", raw.of.iter().count());
+            let remedy = "remove some, or choose another mode";
+            faults.push(fault(OPTION, found, allowed, remedy));
+        }
+        scene.compare = Some(raw.comparison(of));
+        Ok(())
+    }
+
     fn language(&self, exhibit: &Exhibit) -> Result<Option<String>, Vec<Fault>> {
         let Some(tag) = &self.language else {
             return Ok(None);
@@ -200,6 +250,32 @@ impl Overrides {
         let place = "exhibit.languages[0]";
         validated("--language", "exhibit", about.into(), place, exhibit)
             .map(|valid| valid.languages.into_iter().next())
+    }
+}
+
+/// What one word of a comparison refers to.
+fn member(
+    option: &str,
+    text: &str,
+    exhibit: &Exhibit,
+    drawing: &Drawing,
+) -> Result<Member, Vec<Fault>> {
+    let (kind, id) = text.split_once(':').unwrap_or((text, ""));
+    match kind {
+        "state" => {
+            let ids = drawing.states.iter().map(|state| state.id.as_str());
+            resolve(option, "state", id, ids).map(Member::State)
+        }
+        "overlay" => {
+            let ids = drawing.overlays.iter().map(|overlay| overlay.id.as_str());
+            resolve(option, "overlay", id, ids).map(Member::Overlay)
+        }
+        "drawing" => {
+            let ids = exhibit.drawings.iter().map(|drawing| drawing.id.as_str());
+            resolve(option, "drawing", id, ids).map(Member::Drawing)
+        }
+        _ if id == SideName::Verso.word() => Ok(Member::Side(SideName::Verso)),
+        _ => Ok(Member::Side(SideName::Recto)),
     }
 }
 

@@ -315,6 +315,7 @@ pub fn definitions(terms: &Terms, albedo_map: bool, display: bool) -> Vec<&'stat
         ("RETRO", terms.retro),
         ("ANISOTROPIC", terms.anisotropic),
         ("SHEEN", terms.sheen),
+        ("CUT", terms.cut),
         ("DISPLAY", display),
     ]
     .into_iter()

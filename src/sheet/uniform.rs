@@ -7,7 +7,10 @@ use bevy::render::render_resource::ShaderType;
 use glam::{DAffine2, DMat4, DQuat, DVec2, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 
 use crate::{
-    manifest::exhibit::{HeightMap, MAX_LAMPS, MAX_OVERLAYS},
+    manifest::{
+        comparison::Part,
+        exhibit::{HeightMap, MAX_LAMPS, MAX_OVERLAYS},
+    },
     maps::Coding,
     optics::{
         ink::{FILM_TERMS, Film},
@@ -342,6 +345,9 @@ pub struct PaperUniform {
     pub height_texel: f32,
     pub row_scale: f32,
     pub row_offset: f32,
+    pub picture_aspect: f32,
+    pub cut_circle: Vec4,
+    pub cut_lines: [Vec4; 4],
 }
 
 impl PaperUniform {
@@ -359,6 +365,13 @@ impl PaperUniform {
     pub fn set_eye(&mut self, clip_from_table: DMat4, eye: DVec4, table_from_local: DMat4) {
         self.clip_from_local = (clip_from_table * table_from_local).as_mat4();
         self.eye = (table_from_local.inverse() * eye).as_vec4();
+    }
+
+    /// Says what of a picture of `aspect` the side is seen in.
+    pub fn set_part(&mut self, part: &Part, aspect: f64) {
+        self.picture_aspect = aspect as f32;
+        self.cut_circle = part.circle.as_vec4();
+        self.cut_lines = part.lines.map(|line| line.as_vec3().extend(0.0));
     }
 
     /// Sets the lamps, given in the table frame.

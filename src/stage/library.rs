@@ -86,6 +86,16 @@ pub enum Held {
     Surface(Arc<SideSurface>),
 }
 
+impl Held {
+    /// A map, if it is one.
+    pub fn map(self) -> Option<(Handle<Image>, Facts)> {
+        match self {
+            Self::Map(image, facts) => Some((image, facts)),
+            Self::Surface(_) => None,
+        }
+    }
+}
+
 enum Entry {
     Decoding,
     Ready(Held),

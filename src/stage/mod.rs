@@ -18,6 +18,7 @@ pub use sides::Arranged;
 
 use crate::{
     manifest::{
+        comparison::Part,
         exhibit::{Exhibit, Scene, Wording},
         eye::Eye,
     },
@@ -60,11 +61,35 @@ impl Shown {
         Eye::new(&self.scene.camera.fitted(size_mm, self.aspect), size_mm)
     }
 
+    /// The sheets that share the picture, turned as what is shown is turned: one, unless its scene
+    /// compares several.
+    pub fn members(&self) -> Vec<Shared> {
+        let exhibit = &self.exhibit;
+        let rest = |scene: &Scene| exhibit.drawing_of(scene).rest_pose(scene.side);
+        let turned = self.pose * rest(&self.scene).inverse();
+        let parts = exhibit.parts(&self.scene, self.aspect).into_iter();
+        let shared = parts.map(|(scene, part)| {
+            let pose = turned * rest(&scene);
+            Shared { scene, part, pose }
+        });
+        shared.collect()
+    }
+
     /// `wording` in the scene's language, or as near to it as there is.
     pub fn text<'w>(&self, wording: &'w Wording) -> Option<&'w str> {
         self.exhibit
             .text(wording, self.scene.language.as_deref().unwrap_or_default())
     }
+}
+
+/// One of the sheets that share a picture.
+#[derive(Clone, Debug)]
+pub struct Shared {
+    /// Without a comparison of its own.
+    pub scene: Scene,
+    pub part: Part,
+    /// As [`Shown::pose`].
+    pub pose: DQuat,
 }
 
 /// Words for the curator, on standard error; nobody may be listening there any more.

@@ -6,12 +6,13 @@ use bevy::{camera::visibility::NoFrustumCulling, ecs::system::SystemParam, prelu
 use glam::{DMat4, DQuat, DVec3};
 
 use super::{
-    Library, Shown, TABLE, Waker,
+    Library, Shared, Shown, TABLE, Waker,
     library::{Facts, Held, Request, is_lit},
 };
 use crate::{
     manifest::{
         exhibit::{BARE_PAPER, Drawing, SideName},
+        eye::Eye,
         lighting::Lighting,
     },
     needs::{MapUse, Needs, SideNeeds},
@@ -39,8 +40,9 @@ use crate::{
 #[derive(Resource)]
 pub struct Arranged {
     display: bool,
-    needs: Option<(Needs, Request)>,
-    drawing: Option<usize>,
+    /// Of each member of what is shown.
+    needs: Option<Vec<(Needs, Request)>>,
+    drawings: Vec<usize>,
     sides: Vec<ArrangedSide>,
     /// The photometric files of the IES lamps, and their texture.
     profiles: (Vec<Arc<Photometry>>, Option<Handle<Image>>),
@@ -48,6 +50,8 @@ pub struct Arranged {
 }
 
 struct ArrangedSide {
+    /// Index into what [`Shown::members`] gives.
+    member: usize,
     name: SideName,
     entity: Entity,
     material: Handle<PaperMaterial>,
@@ -59,7 +63,7 @@ impl Arranged {
         Self {
             display,
             needs: None,
-            drawing: None,
+            drawings: Vec::new(),
             sides: Vec::new(),
             profiles: (Vec::new(), None),
             settled: false,
@@ -106,76 +110,88 @@ pub fn arrange(
     if arranged.settled && !shown.is_changed() {
         return;
     }
-    let drawing = &shown.exhibit.drawings[shown.scene.drawing];
-    let needs = Needs::of(&shown.exhibit, &shown.scene, shown.tier, shown.both_sides);
-    let surface = Request::Surface(drawing.surface.clone(), drawing.size_mm);
-    let wanted = (needs, surface);
+    let members = shown.members();
+    let wanted: Vec<(Needs, Request)> = members
+        .iter()
+        .map(|member| wanted(&shown, member))
+        .collect();
     if arranged.needs.as_ref() != Some(&wanted) {
         arranged.settled = false;
-        let (needs, surface) = &wanted;
-        let maps = needs.sides.iter().flat_map(|side| &side.maps);
-        let mut requests: Vec<Request> = maps.cloned().map(Request::Map).collect();
-        requests.push(surface.clone());
-        let Some(mut held) = library
+        let requests: Vec<Request> = wanted
+            .iter()
+            .flat_map(|(needs, surface)| {
+                let maps = needs.sides.iter().flat_map(|side| &side.maps);
+                maps.cloned().map(Request::Map).chain([surface.clone()])
+            })
+            .collect();
+        let Some(held) = library
             .bypass_change_detection()
             .take(&requests, waker.as_deref())
         else {
             // What is there follows the hand while the rest is on its way.
-            if arranged.drawing == Some(shown.scene.drawing) {
+            let drawings: Vec<usize> = members.iter().map(|member| member.scene.drawing).collect();
+            if arranged.drawings == drawings {
                 for side in &arranged.sides {
+                    let member = &members[side.member];
                     let seen_alike =
-                        side.needs.terms.parallel_eye == shown.scene.camera.distance_mm.is_none();
+                        side.needs.terms.parallel_eye == member.scene.camera.distance_mm.is_none();
                     if seen_alike && let Some(mut material) = materials.get_mut(&side.material) {
-                        aim(&mut material.paper, &shown, drawing, side.name);
+                        aim(&mut material.paper, &shown, member, side.name);
                     }
                 }
             }
             return;
         };
         library.bypass_change_detection().keep(&requests);
-        let Some(Held::Surface(surface)) = held.pop() else {
-            return;
-        };
         for side in arranged.sides.drain(..) {
             commands.entity(side.entity).despawn();
         }
         let mut held = held.into_iter();
-        for side in &needs.sides {
-            let (images_of_side, facts): (Vec<Handle<Image>>, Vec<Facts>) = held
-                .by_ref()
-                .take(side.maps.len())
-                .filter_map(|held| match held {
-                    Held::Map(image, facts) => Some((image, facts)),
-                    Held::Surface(_) => None,
+        for (k, (needs, _)) in wanted.iter().enumerate() {
+            let drawing = &shown.exhibit.drawings[members[k].scene.drawing];
+            let of_sides: Vec<Vec<(Handle<Image>, Facts)>> = needs
+                .sides
+                .iter()
+                .map(|side| {
+                    let maps = held.by_ref().take(side.maps.len());
+                    maps.filter_map(Held::map).collect()
                 })
-                .unzip();
-            let (paper, rows) = constants(drawing, side, &facts);
-            let mut maps = bound(side, images_of_side);
-            maps.rows = rows.map(|rows| images.add(rows.image()));
-            let material = materials.add(PaperMaterial {
-                paper,
-                terms: side.terms,
-                maps,
-                display: arranged.display,
-            });
-            let mesh = meshes.add(side_surface(&surface, drawing, side.side).mesh());
-            let entity = commands
-                .spawn((
-                    Mesh3d(mesh),
-                    MeshMaterial3d(material.clone()),
-                    NoFrustumCulling,
-                ))
-                .id();
-            let (name, needs) = (side.side, side.clone());
-            arranged.sides.push(ArrangedSide {
-                name,
-                entity,
-                material,
-                needs,
-            });
+                .collect();
+            let Some(Held::Surface(surface)) = held.next() else {
+                return;
+            };
+            for (side, maps) in needs.sides.iter().zip(of_sides) {
+                let (images_of_side, facts): (Vec<Handle<Image>>, Vec<Facts>) =
+                    maps.into_iter().unzip();
+                let (paper, rows) = constants(drawing, side, &facts);
+                let mut maps = bound(side, images_of_side);
+                maps.rows = rows.map(|rows| images.add(rows.image()));
+                let material = materials.add(PaperMaterial {
+                    paper,
+                    terms: side.terms,
+                    maps,
+                    display: arranged.display,
+                });
+                let mesh = meshes.add(side_surface(&surface, drawing, side.side).mesh());
+                let entity = commands
+                    .spawn((
+                        Mesh3d(mesh),
+                        MeshMaterial3d(material.clone()),
+                        NoFrustumCulling,
+                    ))
+                    .id();
+                let (name, needs) = (side.side, side.clone());
+                arranged.sides.push(ArrangedSide {
+                    member: k,
+                    name,
+                    entity,
+                    material,
+                    needs,
+                });
+            }
         }
         arranged.needs = Some(wanted);
-        arranged.drawing = Some(shown.scene.drawing);
+        arranged.drawings = members.iter().map(|member| member.scene.drawing).collect();
     }
     let lighting = shown.exhibit.lighting(&shown.scene);
     let photometry = lighting.photometry();
@@ -188,11 +204,30 @@ pub fn arrange(
     }
     for side in &arranged.sides {
         if let Some(mut material) = materials.get_mut(&side.material) {
-            place(&mut material.paper, &shown, drawing, side, &lighting);
+            place(
+                &mut material.paper,
+                &shown,
+                &members[side.member],
+                side,
+                &lighting,
+            );
             material.maps.profiles.clone_from(&arranged.profiles.1);
         }
     }
     arranged.settled = true;
+}
+
+/// What a member requires.
+fn wanted(shown: &Shown, member: &Shared) -> (Needs, Request) {
+    let drawing = &shown.exhibit.drawings[member.scene.drawing];
+    let mut needs = Needs::of(&shown.exhibit, &member.scene, shown.tier, shown.both_sides);
+    for side in &mut needs.sides {
+        side.terms.cut = member.part.is_cut();
+    }
+    (
+        needs,
+        Request::Surface(drawing.surface.clone(), drawing.size_mm),
+    )
 }
 
 /// What does not change while the sheet and the lamps move.
@@ -346,15 +381,21 @@ fn side_surface(recto: &SideSurface, drawing: &Drawing, side: SideName) -> SideS
 }
 
 /// Points the eye at a side as the sheet lies now; gives the side's turn, table from local.
-fn aim(uniform: &mut PaperUniform, shown: &Shown, drawing: &Drawing, side: SideName) -> DQuat {
-    let table_from_local = shown.pose * drawing.rest_pose(side).inverse();
-    let eye = shown.eye();
-    let clip_from_table = eye.clip_from_table(shown.aspect);
+fn aim(uniform: &mut PaperUniform, shown: &Shown, member: &Shared, side: SideName) -> DQuat {
+    let Shared { scene, part, pose } = member;
+    let drawing = &shown.exhibit.drawings[scene.drawing];
+    let table_from_local = *pose * drawing.rest_pose(side).inverse();
+    let aspect = part.aspect(shown.aspect);
+    let eye = Eye::new(
+        &scene.camera.fitted(drawing.size_mm, aspect),
+        drawing.size_mm,
+    );
     uniform.set_eye(
-        clip_from_table,
+        part.clip_from_own() * eye.clip_from_table(aspect),
         eye.place(),
         DMat4::from_quat(table_from_local),
     );
+    uniform.set_part(part, shown.aspect);
     table_from_local
 }
 
@@ -362,11 +403,11 @@ fn aim(uniform: &mut PaperUniform, shown: &Shown, drawing: &Drawing, side: SideN
 fn place(
     uniform: &mut PaperUniform,
     shown: &Shown,
-    drawing: &Drawing,
+    member: &Shared,
     side: &ArrangedSide,
     lighting: &Lighting,
 ) {
-    let table_from_local = aim(uniform, shown, drawing, side.name);
+    let table_from_local = aim(uniform, shown, member, side.name);
     uniform.set_lights(
         &lighting.lights,
         lighting.ambient,
@@ -374,7 +415,7 @@ fn place(
         shown.tier == Tier::Draft,
     );
     uniform.light_table = lighting.light_table.as_vec3();
-    let level = shown.scene.exposure.level as f32;
+    let level = member.scene.exposure.level as f32;
     uniform.sign_gain = 1.0 / level;
     uniform.level = Vec4::splat(level);
     let overlays: Vec<MapPlace> = side
@@ -386,7 +427,7 @@ fn place(
             _ => None,
         })
         .zip(
-            shown
+            member
                 .scene
                 .overlays
                 .iter()

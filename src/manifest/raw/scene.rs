@@ -3,15 +3,16 @@
 use super::{
     super::{
         decode::{Brief, List},
-        exhibit::{CompareMode, MAX_LAMPS, MAX_OVERLAYS, SideName},
+        exhibit::{CompareMode, Comparison, MAX_LAMPS, MAX_OVERLAYS, Member, SideName},
         macros::record,
     },
     RawWording,
     values::{
-        DistanceMm, Fraction, Id, LampLux, Language, Level, MemberText, PlaceMm, RoomLux, Seconds,
-        Temperature, TiltDeg, TurnDeg, ViewMm,
+        DeltaE, DistanceMm, Fraction, Id, LampLux, Language, Level, Magnification, MemberText,
+        PlaceMm, RoomLux, Seconds, Temperature, TiltDeg, TurnDeg, ViewMm,
     },
 };
+use crate::units::Degrees;
 
 record! {
     /// A view: everything that decides a picture.
@@ -77,8 +78,42 @@ record! {
             /// The members, such as state:before, side:verso, overlay:damage, drawing:landscape.
             of: List<MemberText, 2, 8>,
         }
-        optional {}
+        optional {
+            /// Where a curtain hangs, 0 to 1 of the way across, or how much of the second member a
+            /// blend shows. Without it: half.
+            at: Fraction,
+            /// The way across a curtain, in degrees anticlockwise from the right. Without it: 0, a
+            /// curtain that is drawn sideways.
+            angle_deg: TurnDeg,
+            /// The centre of a loupe, from the left and top edges of the picture, each 0 to 1.
+            /// Without it: the middle.
+            centre: [Fraction; 2],
+            /// The radius of a loupe as a share of the picture's height. Without it: a quarter.
+            radius: Fraction,
+            /// How much larger a loupe shows its member. Without it: twice.
+            magnify: Magnification,
+            /// The ΔE00 that a difference shows at the top of its scale. Without it: 10.
+            full_delta_e: DeltaE,
+        }
         rules []
+    }
+}
+
+impl RawCompare {
+    /// As it is written, its members resolved to `of`.
+    pub fn comparison(&self, of: Vec<Member>) -> Comparison {
+        let usual = Comparison::new(self.mode, of);
+        let share = |share: Option<Fraction>, usual: f64| share.map_or(usual, |share| share.0);
+        let centre = self.centre.map(|centre| centre.map(|share| share.0).into());
+        Comparison {
+            at: share(self.at, usual.at),
+            angle: Degrees(self.angle_deg.map_or(usual.angle.0, |angle| angle.0)),
+            centre: centre.unwrap_or(usual.centre),
+            radius: share(self.radius, usual.radius),
+            magnify: self.magnify.map_or(usual.magnify, |magnify| magnify.0),
+            full_delta_e: self.full_delta_e.map_or(usual.full_delta_e, |e| e.0),
+            ..usual
+        }
     }
 }
 

@@ -77,6 +77,8 @@ number! {
     ConeDeg = 0.1 ..= 89.9, "degrees";
     /// A factor of size.
     Scale = 0.01 ..= 100.0, "";
+    /// How much larger something is shown.
+    Magnification = 1.0 ..= 20.0, "";
     /// A value of a measured quantity in its own unit.
     Quantity = -1000000000.0 ..= 1000000000.0, "";
     /// A duration.

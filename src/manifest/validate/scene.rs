@@ -318,11 +318,23 @@ impl Validator<'_, '_> {
             of.push(member);
         }
         let mode = raw.mode;
-        self.not_shown_yet(format!(
-            "Scene \"{scene}\": comparisons ({}) are not shown yet.",
-            word::<CompareMode>(mode)
-        ));
-        complete.then_some(Some(Comparison { mode, of }))
+        if let Some(allowed) = mode.allowed_instead_of(of.len()).filter(|_| complete) {
+            let words = Words::new(
+                format!("{} members", of.len()),
+                allowed,
+                "remove some, or choose another mode",
+            );
+            self.report.fault(&trail.key("of"), words);
+            return None;
+        }
+        if !mode.divides() {
+            self.not_shown_yet(format!(
+                "Scene \"{scene}\": a window shows the first member of a comparison by {}; \
+                 recto render shows all.",
+                word::<CompareMode>(mode)
+            ));
+        }
+        complete.then(|| Some(raw.comparison(of)))
     }
 
     fn member(

@@ -1,4 +1,14 @@
 //! Where another picture lies on the sheet: transforms fitted to control points.
+//!
+//! | what | where |
+//! |---|---|
+//! | shift, rotation and scale; any affine transform | [`similarity`], [`affine`] |
+//! | a transform that bends | [`plate`] |
+//! | control points found in two pictures of one sheet | [`propose`] |
+
+mod correlate;
+pub mod plate;
+pub mod propose;
 
 use glam::{DAffine2, DMat2, DVec2};
 
@@ -29,6 +39,24 @@ pub enum RegistrationError {
     OneLine(Frame),
     #[error("the control points fit no similarity; are their places exchanged, or mirrored?")]
     NoSimilarity,
+    #[error("control points {first} and {second} lie in one place on the sheet; remove one")]
+    Doubled {
+        /// Counted from 1, in the order given.
+        first: usize,
+        second: usize,
+    },
+    #[error(
+        "the transform folds the picture over near ({}, {}) mm on the sheet; \
+         is a control point there misplaced?", near_mm[0], near_mm[1]
+    )]
+    Folded {
+        /// The worst place, to a millimetre.
+        near_mm: [i32; 2],
+    },
+    #[error("the sheet has no size")]
+    NoSheet,
+    #[error("the smoothing must be a finite number of at least 0")]
+    Smoothing,
 }
 
 /// Which of a control point's two places.
@@ -80,14 +108,7 @@ pub fn similarity(points: &[ControlPoint]) -> Result<Fit, RegistrationError> {
 /// [`RegistrationError`] where the points do not determine it.
 pub fn affine(points: &[ControlPoint]) -> Result<Fit, RegistrationError> {
     let centred = Centred::new(points, 3)?;
-    for (frame, spread) in [
-        (Frame::Picture, centred.picture),
-        (Frame::Sheet, centred.sheet),
-    ] {
-        if spread.smallest() <= THIN * THIN * spread.largest() {
-            return Err(RegistrationError::OneLine(frame));
-        }
-    }
+    centred.spans_a_plane()?;
     // Normal equations of centred points: M · Σ mm mmᵀ = Σ px mmᵀ.
     let mut cross = DMat2::ZERO;
     for (px, mm) in centred.pairs(points) {
@@ -163,6 +184,15 @@ impl Centred {
             picture,
             sheet,
         })
+    }
+
+    fn spans_a_plane(&self) -> Result<(), RegistrationError> {
+        for (frame, spread) in [(Frame::Picture, self.picture), (Frame::Sheet, self.sheet)] {
+            if spread.smallest() <= THIN * THIN * spread.largest() {
+                return Err(RegistrationError::OneLine(frame));
+            }
+        }
+        Ok(())
     }
 
     fn pairs(&self, points: &[ControlPoint]) -> impl Iterator<Item = (DVec2, DVec2)> {

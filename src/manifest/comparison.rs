@@ -1,0 +1,283 @@
+//! A comparison as the scenes of its members, and the part of the picture that each of them has.
+//!
+//! Places in the picture are in NDC: −1…1, x right, y up.
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+use super::{
+    exhibit::{Camera, CompareMode, Comparison, Exhibit, Member, Scene},
+    frames,
+};
+
+/// Of a picture, what one member of a comparison has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// The member's own picture is scaled by this about its middle, and then shifted.
+    pub scale: DVec2,
+    pub shift: DVec2,
+    /// The member is seen where a·x + b·y + c ≥ 0 for all of these (a, b, c),
+    pub lines: [DVec3; 4],
+    /// and where s·(r² − d²) ≥ 0, d the distance from the centre (x, y) with widths counted in half
+    /// heights: (x, y, r, s), s 1 for the inside, −1 for the outside, 0 for no circle.
+    pub circle: DVec4,
+}
+
+/// No line: everything lies on its inner side.
+const NO_LINE: DVec3 = DVec3::Z;
+
+impl Part {
+    /// The whole picture.
+    pub const WHOLE: Self = Self {
+        scale: DVec2::ONE,
+        shift: DVec2::ZERO,
+        lines: [NO_LINE; 4],
+        circle: DVec4::ZERO,
+    };
+
+    /// Whether anything of the picture is another member's.
+    pub fn is_cut(&self) -> bool {
+        self.lines != Self::WHOLE.lines || self.circle != Self::WHOLE.circle
+    }
+
+    /// Width over height of the member's own picture in one of `aspect`.
+    pub fn aspect(&self, aspect: f64) -> f64 {
+        aspect * self.scale.x / self.scale.y
+    }
+
+    /// The clip space of the whole from that of the member's own picture.
+    pub fn clip_from_own(&self) -> DMat4 {
+        let [scale, shift] = [self.scale, self.shift];
+        DMat4::from_translation(shift.extend(0.0)) * DMat4::from_scale(scale.extend(1.0))
+    }
+
+    /// Whether the member is seen at `ndc` in a picture of `aspect`.
+    pub fn shows(&self, ndc: DVec2, aspect: f64) -> bool {
+        let [x, y, r, s] = self.circle.to_array();
+        let from_centre = (ndc - DVec2::new(x, y)) * DVec2::new(aspect, 1.0);
+        let beside = |line: &DVec3| line.dot(ndc.extend(1.0)) >= 0.0;
+        self.lines.iter().all(beside) && s * (r * r - from_centre.length_squared()) >= 0.0
+    }
+
+    /// The curtain's part `k` of `count`: bands across the direction at `angle` (radians,
+    /// anticlockwise from the right), the first two of two divided at the share `at` of the way.
+    fn band(k: usize, count: usize, at: f64, angle: f64, aspect: f64) -> Self {
+        let across = DVec2::new(aspect * angle.cos(), angle.sin());
+        let reach = across.x.abs() + across.y.abs();
+        let edge = |k: usize| {
+            let share = at + (k as f64 - 0.5 * count as f64) / count as f64;
+            reach * (2.0 * share - 1.0)
+        };
+        let mut lines = [NO_LINE; 4];
+        if k > 0 {
+            lines[0] = across.extend(-edge(k));
+        }
+        if k + 1 < count {
+            lines[1] = (-across).extend(edge(k + 1));
+        }
+        Self {
+            lines,
+            ..Self::WHOLE
+        }
+    }
+
+    /// Cell `k` of `count` (2 to 4): columns from the left, four in two rows.
+    fn cell(k: usize, count: usize) -> Self {
+        let (columns, rows) = if count == 4 { (2, 2) } else { (count, 1) };
+        let scale = DVec2::new(1.0 / columns as f64, 1.0 / rows as f64);
+        let column = (k % columns) as f64;
+        let row = (k / columns) as f64;
+        let shift = DVec2::new(
+            (2.0 * column + 1.0) * scale.x - 1.0,
+            1.0 - (2.0 * row + 1.0) * scale.y,
+        );
+        Self {
+            scale,
+            shift,
+            lines: [
+                DVec3::new(1.0, 0.0, scale.x - shift.x),
+                DVec3::new(-1.0, 0.0, scale.x + shift.x),
+                DVec3::new(0.0, 1.0, scale.y - shift.y),
+                DVec3::new(0.0, -1.0, scale.y + shift.y),
+            ],
+            ..Self::WHOLE
+        }
+    }
+
+    /// What a loupe shows (`inside`), larger by `magnify` about its centre, or leaves.
+    fn loupe(inside: bool, comparison: &Comparison) -> Self {
+        let centre = DVec2::new(
+            2.0 * comparison.centre.x - 1.0,
+            1.0 - 2.0 * comparison.centre.y,
+        );
+        let radius = 2.0 * comparison.radius;
+        let circle = |s: f64| DVec4::new(centre.x, centre.y, radius, s);
+        if !inside {
+            return Self {
+                circle: circle(-1.0),
+                ..Self::WHOLE
+            };
+        }
+        Self {
+            scale: DVec2::splat(comparison.magnify),
+            shift: centre * (1.0 - comparison.magnify),
+            circle: circle(1.0),
+            ..Self::WHOLE
+        }
+    }
+}
+
+impl CompareMode {
+    /// Whether each pixel belongs to one member; otherwise all of them make it.
+    pub fn divides(self) -> bool {
+        matches!(self, Self::Curtain | Self::SideBySide | Self::Loupe)
+    }
+
+    /// How many members it shows, at least and at most.
+    pub fn members(self) -> [usize; 2] {
+        match self {
+            Self::Curtain | Self::Flicker => [2, 8],
+            Self::SideBySide => [2, 4],
+            Self::Blend | Self::Loupe | Self::Difference => [2, 2],
+        }
+    }
+
+    /// What is allowed, where `count` members are not.
+    pub fn allowed_instead_of(self, count: usize) -> Option<String> {
+        let [least, most] = self.members();
+        let allowed = match least == most {
+            true => format!("{least} for this mode"),
+            false => format!("{least} to {most} for this mode"),
+        };
+        (!(least..=most).contains(&count)).then_some(allowed)
+    }
+}
+
+impl Exhibit {
+    /// What a picture of `aspect` (width over height) of `scene` is made of: scenes without
+    /// comparisons, each with its part. Of members that do not divide the picture among them, the
+    /// first has it.
+    pub fn parts(&self, scene: &Scene, aspect: f64) -> Vec<(Scene, Part)> {
+        let Some(comparison) = &scene.compare else {
+            return vec![(scene.clone(), Part::WHOLE)];
+        };
+        let members = self.members(scene);
+        let count = members.len();
+        let angle = comparison.angle.radians();
+        let part = |k: usize| match comparison.mode {
+            CompareMode::Curtain => Part::band(k, count, comparison.at, angle, aspect),
+            CompareMode::SideBySide => Part::cell(k, count),
+            CompareMode::Loupe => Part::loupe(k > 0, comparison),
+            CompareMode::Blend | CompareMode::Difference | CompareMode::Flicker => Part::WHOLE,
+        };
+        let shown = if comparison.mode.divides() { count } else { 1 };
+        let members = members.into_iter().take(shown).enumerate();
+        members.map(|(k, member)| (member, part(k))).collect()
+    }
+
+    /// The members of a scene's comparison as scenes of their own, in order: the scene with
+    /// another state, side, overlay or drawing, under the same lamps and the same eye.
+    pub fn members(&self, scene: &Scene) -> Vec<Scene> {
+        let Some(comparison) = &scene.compare else {
+            return Vec::new();
+        };
+        let members = comparison.of.iter();
+        members.map(|member| self.member(scene, *member)).collect()
+    }
+
+    fn member(&self, scene: &Scene, member: Member) -> Scene {
+        let drawing = &self.drawings[scene.drawing];
+        let mut shown = Scene {
+            compare: None,
+            ..scene.clone()
+        };
+        match member {
+            Member::State(state) => shown.state = Some(state),
+            Member::Side(side) if side == scene.side => {}
+            Member::Side(side) => {
+                shown.side = side;
+                let centre = shown.camera.centre_mm;
+                shown.camera.centre_mm = frames::other_side(centre, drawing.size_mm, drawing.flip);
+                shown.overlays.clear();
+            }
+            Member::Overlay(overlay) => {
+                shown.overlays.retain(|(index, _)| *index != overlay);
+                shown.overlays.push((overlay, 1.0));
+            }
+            // The middles of both sheets lie under the same place of the eye.
+            Member::Drawing(other) => {
+                let size_mm = self.drawings[other].size_mm;
+                let offset = scene.camera.centre_mm - drawing.size_mm / 2.0;
+                shown.drawing = other;
+                shown.side = super::exhibit::SideName::Recto;
+                shown.state = None;
+                shown.overlays.clear();
+                shown.camera = Camera {
+                    centre_mm: size_mm / 2.0 + offset,
+                    ..scene.camera
+                };
+            }
+        }
+        shown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The parts of `count` members cover each place of the picture once.
+    fn divide(parts: &[Part], aspect: f64) {
+        for i in 0..40 {
+            for j in 0..40 {
+                let at = |k: i32| (f64::from(k) + 0.37) / 20.0 - 1.0;
+                let place = DVec2::new(at(i), at(j));
+                let seen = parts.iter().filter(|part| part.shows(place, aspect));
+                assert_eq!(seen.count(), 1, "{place}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_place_belongs_to_one_member() {
+        for count in 2..=8 {
+            for angle in [0.0, 0.7, 1.57, 3.0, -2.0] {
+                let band = |k| Part::band(k, count, 0.45, angle, 1.6);
+                divide(&(0..count).map(band).collect::<Vec<_>>(), 1.6);
+            }
+        }
+        for count in 2..=4 {
+            let cell = |k| Part::cell(k, count);
+            divide(&(0..count).map(cell).collect::<Vec<_>>(), 1.6);
+        }
+        let comparison = Comparison {
+            centre: DVec2::new(0.3, 0.6),
+            radius: 0.2,
+            magnify: 3.0,
+            ..Comparison::new(CompareMode::Loupe, Vec::new())
+        };
+        let loupe = [false, true].map(|inside| Part::loupe(inside, &comparison));
+        divide(&loupe, 1.6);
+        // The place under the middle of the loupe stays there.
+        let own = DVec2::new(-0.4, -0.2);
+        let seen = own * loupe[1].scale + loupe[1].shift;
+        assert!((seen - own).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_curtain_begins_on_the_left_and_divides_where_it_is_drawn_to() {
+        let [left, right] = [0, 1].map(|k| Part::band(k, 2, 0.25, 0.0, 1.6));
+        assert!(
+            left.shows(DVec2::new(-0.51, 0.9), 1.6) && right.shows(DVec2::new(-0.49, 0.9), 1.6)
+        );
+        assert!(left.is_cut() && !Part::WHOLE.is_cut());
+    }
+
+    #[test]
+    fn a_cell_s_own_picture_fills_it() {
+        let cell = Part::cell(2, 4);
+        let corner = |x: f64, y: f64| DVec2::new(x, y) * cell.scale + cell.shift;
+        assert_eq!(corner(-1.0, -1.0), DVec2::new(-1.0, -1.0));
+        assert_eq!(corner(1.0, 1.0), DVec2::ZERO);
+        assert_eq!(Part::cell(0, 2).aspect(1.6), 0.8);
+    }
+}
