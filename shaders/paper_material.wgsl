@@ -346,8 +346,9 @@ fn light_small(light: Light, p: vec3<f32>) -> Incidence {
 }
 
 #ifdef COUPLED
-// Rows over √α, narrowed by src/sheet/rows.rs, with paths behind a first one. Each holds what is the same for all directions, T
-// and E₂ over powers of √μ with the index of the paths, P_c, and P over powers of √μ.
+// Rows over √α, narrowed by src/sheet/rows.rs; where there are paths, behind a first row of its
+// own. Each holds what is the same for all directions, T and E₂ over powers of √μ with the index of
+// the paths, P_c, and P over powers of √μ.
 fn row_of(alpha: f32) -> i32 {
     return i32(fit_root(alpha) * paper.row_scale + paper.row_offset);
 }

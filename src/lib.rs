@@ -8,6 +8,7 @@
 //! | [`optics`] | what paper, ink and lamps do with light, in f64; twins in `shaders/paper_bsdf.wgsl` |
 //! | [`mod@reference`] | the judge: the same light by a random walk, of a spot or a picture, with mean and variance |
 //! | [`maps`] | picture files → mip chains, each kind filtered in its own way; files written whole |
+//! | [`measure`] | lengths, profiles, laid lines, strokes and colours, each with its uncertainty |
 //! | [`manifest`] | `exhibit.toml` → a validated [`Exhibit`](manifest::Exhibit), or every fault at once |
 //! | [`needs`] | what a scene requires and why: terms, maps, sides |
 //! | [`sheet`] | the sheet in Bevy: mesh, the one material, the only narrowing from f64 to f32 |
@@ -38,6 +39,7 @@ pub mod develop;
 pub mod device;
 pub mod manifest;
 pub mod maps;
+pub mod measure;
 pub mod needs;
 pub mod optics;
 pub mod reference;

@@ -27,13 +27,14 @@ use bevy::{
 };
 
 use crate::{
+    colour,
     device::{self, NoDevice},
-    manifest::exhibit::Scene,
+    manifest::exhibit::{CompareMode, Comparison, Scene},
     maps::MapError,
     stage::{
         Arranged, Library, Shown, StagePlugin,
         camera::{camera_bundle, without_clusters},
-        legend::TextCamera,
+        legend::{DIFFERENCE_COLOURS, TextCamera},
     },
 };
 
@@ -215,11 +216,28 @@ impl Darkroom {
         self.frame()
     }
 
-    /// One picture of `shown`, with a legend if overlays lie on it.
+    /// One picture of `shown`, with a legend if overlays lie on it or colours stand for differences.
     ///
     /// # Errors
     /// As [`Darkroom::arrange`].
     pub fn take(&mut self, shown: Shown, size: [u32; 2]) -> Result<Picture, ShotError> {
+        let Some(comparison) = shown.scene.compare.clone() else {
+            return self.expose_whole(shown, size);
+        };
+        let second = match comparison.mode {
+            CompareMode::Blend | CompareMode::Difference => shown.alone(1),
+            _ => None,
+        };
+        let level = shown.scene.exposure.level;
+        let first = self.expose_whole(shown, size)?;
+        let Some(second) = second else {
+            return Ok(first);
+        };
+        let second = self.expose_whole(second, size)?;
+        Ok(combined(&comparison, first, &second, level))
+    }
+
+    fn expose_whole(&mut self, shown: Shown, size: [u32; 2]) -> Result<Picture, ShotError> {
         let has_legend = has_legend(&shown.scene);
         self.arrange(shown, size)?;
         let wanted = [Some(&self.target), has_legend.then_some(&self.text_target)];
@@ -245,7 +263,7 @@ impl Darkroom {
                 })
             })
             .collect();
-        let linear = |byte: u8| crate::colour::srgb_decode(f64::from(byte) / 255.0);
+        let linear = |byte: u8| colour::srgb_decode(f64::from(byte) / 255.0);
         let legend = text
             .chunks_exact(4)
             .map(|texel| {
@@ -343,7 +361,30 @@ impl Darkroom {
 }
 
 fn has_legend(scene: &Scene) -> bool {
+    let is_coded = |comparison: &Comparison| comparison.mode == CompareMode::Difference;
     scene.overlays.iter().any(|(_, opacity)| *opacity > 0.0)
+        || scene.compare.as_ref().is_some_and(is_coded)
+}
+
+/// Two members of a comparison in one picture, shown at the linear display `level`: mixed as light,
+/// or the ΔE00 of what a display shows of them as a colour of [`DIFFERENCE_COLOURS`].
+fn combined(comparison: &Comparison, mut first: Picture, second: &Picture, level: f64) -> Picture {
+    let shown = |light: &[f32; 3]| light.map(|v| (f64::from(v) * level).clamp(0.0, 1.0));
+    let pixel = |(a, b): (&mut [f32; 3], &[f32; 3])| {
+        if comparison.mode == CompareMode::Difference {
+            let [lab_a, lab_b] = [&*a, b].map(|light| colour::lab_from_linear(shown(light)));
+            let share = colour::delta_e00(lab_a, lab_b) / comparison.full_delta_e;
+            let coded = DIFFERENCE_COLOURS.colour(share.min(1.0));
+            *a = coded.map(|v| (v / level) as f32);
+        } else {
+            let at = comparison.at as f32;
+            for (a, b) in a.iter_mut().zip(b) {
+                *a = *a * (1.0 - at) + b * at;
+            }
+        }
+    };
+    first.pixels.iter_mut().zip(&second.pixels).for_each(pixel);
+    first
 }
 
 /// Where the device leaves a captured picture.

@@ -16,6 +16,8 @@ mod baselines;
 mod capture;
 #[path = "frames/colour.rs"]
 mod colour;
+#[path = "frames/compare.rs"]
+mod compare;
 #[path = "frames/crops.rs"]
 mod crops;
 #[path = "frames/lamps.rs"]

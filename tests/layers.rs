@@ -8,11 +8,12 @@ use std::{
 
 /// Each module with the modules, or paths within them, that it may name. `bevy` stands for every
 /// crate of Bevy's. The crate's root and `cli` may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 18] = [
+const MAY_IMPORT: [(&str, &[&str]); 19] = [
     ("units", &[]),
     ("colour", &[]),
     ("optics", &["units", "colour"]),
     ("maps", &["units", "colour"]),
+    ("measure", &["units", "colour"]),
     // Headers of pictures are checked at validation.
     ("manifest", &["units", "colour", "optics", "maps"]),
     ("needs", &["manifest", "optics", "maps"]),

@@ -468,6 +468,9 @@ impl Sentinel {
             height_texel: self.f32(),
             row_scale: self.f32(),
             row_offset: self.f32(),
+            picture_aspect: self.f32(),
+            cut_circle: self.vec4(),
+            cut_lines: std::array::from_fn::<_, 4, _>(|_| self.vec4()),
         })
     }
 }

@@ -140,6 +140,12 @@ fn main() -> Result<(), Anything> {
                     .any(|(k, c)| named(c) && (k == i || c.to == i))
         })
         .collect();
+    if let Some(name) = names.iter().find(|name| {
+        !name.starts_with("--") && !CASES.iter().any(|case| case.name == name.as_str())
+    }) {
+        let known: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+        return Err(format!("no case is named {name}; there are {}", known.join("; ")).into());
+    }
     let mut samples: Vec<Vec<f64>> = CASES.iter().map(|_| Vec::new()).collect();
     let mut shaded = vec![0; CASES.len()];
     for _ in 0..ROUNDS {

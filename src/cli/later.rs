@@ -8,7 +8,7 @@ use super::Failure;
 
 /// What help says about them.
 pub const HELP: &str = "Not in this version yet: prepare, import, \
-                        export, register, supervise, publish.";
+                        export, supervise, publish.";
 
 /// Whatever follows the command.
 #[derive(clap::Args)]
@@ -42,8 +42,6 @@ commands! {
     Import = "import",
     /// Export to IIIF
     Export = "export",
-    /// Propose control points
-    Register = "register",
     /// Keep a wall running
     Supervise = "supervise",
     /// Publish an exhibit

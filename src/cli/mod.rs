@@ -10,6 +10,7 @@ mod new;
 mod options;
 mod output;
 mod reference;
+mod register;
 mod render;
 pub mod report;
 mod sample;
@@ -54,6 +55,8 @@ enum Command {
     Bsdf(bsdf::Arguments),
     /// Judge every tier: its error against the reference, and what it costs
     Tradeoff(tradeoff::Arguments),
+    /// Propose control points from the pictures themselves
+    Register(register::Arguments),
     /// Start an exhibit from one picture
     New(new::Arguments),
     /// Write the sample exhibits and their maps
@@ -77,6 +80,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Check(arguments) => check::run(&arguments),
         Command::Bsdf(arguments) => bsdf::run(&arguments),
         Command::Tradeoff(arguments) => tradeoff::run(&arguments),
+        Command::Register(arguments) => register::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

@@ -60,7 +60,7 @@ impl SceneArguments {
     }
 }
 
-fn side() -> impl TypedValueParser<Value = SideName> {
+pub fn side() -> impl TypedValueParser<Value = SideName> {
     const SIDES: [SideName; 2] = [SideName::Recto, SideName::Verso];
     PossibleValuesParser::new(SIDES.map(SideName::word)).try_map(|word| {
         let named = |side: &SideName| side.word() == word;

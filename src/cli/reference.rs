@@ -1,6 +1,9 @@
 //! `recto reference`
 
-use std::path::{self, Path, PathBuf};
+use std::{
+    ffi::OsStr,
+    path::{Path, PathBuf},
+};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
@@ -105,8 +108,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     // The study tier asks for the most maps.
     let commission = arguments.pictures.commission(Tier::Study, true)?;
     if let Some(file) = &variance {
-        let whole = |path: &Path| path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        if whole(file) == whole(&commission.out) {
+        if same_file(file, &commission.out) {
             return Err(Failure::Usage(format!(
                 "--variance {}: --out names the same file; choose a file for each",
                 file.display()
@@ -142,6 +144,21 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Whether two paths of files, of which neither has to be there, lead to one place.
+fn same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        let folder = match path.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        };
+        (
+            folder.canonicalize().ok(),
+            path.file_name().map(OsStr::to_owned),
+        )
+    };
+    place(a) == place(b)
 }
 
 /// Walks one scene, with a bar where somebody watches.

@@ -102,7 +102,11 @@ pub fn comb(row: &[f64], pitch_mm: f64, [shortest, longest]: [f64; 2]) -> Option
         .find(|&short| short * HIGHEST >= 1.0 && table.score(short, CAP) >= SAME * score);
     Some(Comb {
         spacing_mm: spacing,
-        sigma_mm: table.sigma(spacing),
+        // No mark is known better than to a sample of the row: wires are not laid exactly. The
+        // spacing of n marks known to σ is known to σ √12 / n^1.5.
+        sigma_mm: table
+            .sigma(spacing)
+            .max(pitch_mm * 12f64.sqrt() / (length / spacing).powf(1.5)),
         phase_mm,
         steadiness: steadiness(row, pitch_mm, spacing, phase_mm),
         power: table.power(spacing),

@@ -332,7 +332,7 @@ mod tests {
         let (width, height) = ((160.0 / page.pixel) as usize, (120.0 / page.pixel) as usize);
         let mut rng = Rng::seed_from_u64(page.seed);
         let laid_along = DVec2::from_angle(page.skew_deg.to_radians());
-        let lattice: Vec<f64> = (0..40 * 40).map(|_| rng.random_range(-1.0..1.0)).collect();
+        let lattice: Vec<f64> = (0..60 * 60).map(|_| rng.random_range(-1.0..1.0)).collect();
         // Clouds of pulp some 5 mm across, with no period.
         let clouds = |at: DVec2| {
             // Turned, so that the lattice shows in no direction that is searched.
@@ -340,7 +340,7 @@ mod tests {
             let (x, y) = (place.x as usize, place.y as usize);
             let share = place.fract() * place.fract() * (3.0 - 2.0 * place.fract());
             let row = |y: usize| {
-                let (a, b) = (lattice[y * 40 + x], lattice[y * 40 + x + 1]);
+                let (a, b) = (lattice[y * 60 + x], lattice[y * 60 + x + 1]);
                 a + (b - a) * share.x
             };
             row(y) + (row(y + 1) - row(y)) * share.y

@@ -11,7 +11,7 @@
 //! | [`spectrum`] | the power spectrum of such an area and its sharp peaks |
 //! | [`lines`] | spacing and direction of laid and chain lines |
 //! | [`comb`] | equally spaced marks in a row of values, which chain lines are |
-//! | [`stroke`] | width of a stroke |
+//! | [`stroke`], `blur` | width of a stroke, without that of the pixels |
 //! | [`probe`](mod@probe) | mean colour of a patch, and the difference of two |
 //!
 //! # Symbols
@@ -26,6 +26,7 @@
 
 use glam::DVec2;
 
+mod blur;
 pub mod comb;
 pub mod length;
 pub mod lines;

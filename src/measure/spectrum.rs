@@ -260,7 +260,7 @@ impl<'a> Spectrum<'a> {
         let across = [-1.0, 0.0, 1.0].map(|i| phasors(columns, f.x + i * step.x));
         let down = [-1.0, 0.0, 1.0].map(|j| phasors(rows, f.y + j * step.y));
         let mut sums = [Complex::new(0.0, 0.0); 9];
-        for y in 0..rows {
+        for (y, turn) in (0..rows).map(|y| (y, [0, 1, 2].map(|j: usize| down[j][y]))) {
             let mut line = [Complex::new(0.0, 0.0); 3];
             for x in 0..columns {
                 let value = self.windowed(tile, x, y);
@@ -269,7 +269,7 @@ impl<'a> Spectrum<'a> {
                 }
             }
             for (i, sum) in sums.iter_mut().enumerate() {
-                *sum += line[i % 3] * down[i / 3][y];
+                *sum += line[i % 3] * turn[i / 3];
             }
         }
         sums.map(|sum| sum.norm_sqr())

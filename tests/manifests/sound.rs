@@ -281,7 +281,6 @@ fn what_is_not_shown_yet_is_named() {
         [
             "Drawing \"landscape\": chain_lines_mm of the paper does not change the picture yet.",
             "Drawing \"landscape\": hotspots are not shown yet.",
-            "Scene \"restoration\": comparisons (curtain) are not shown yet.",
             "Tour \"attract\": tours do not run yet.",
         ]
     );

@@ -69,10 +69,10 @@ impl Correlator {
 
     /// The best shift of `second` under the patch of `first` whose corner is at `left`, `top`;
     /// `None` where either is without contrast there, or where the best shift is at the end of
-    /// the reach. The patch must lie inside `first`. The values of `second` have unit variance.
+    /// the reach. The patch must lie inside `first`. The values of `second` have a mean square of 1.
     ///
     /// D. Padfield, *IEEE Trans. Image Process.* 21 (2012) 2706, with a mask on the first only:
-    /// outside `second` its values are 0, their mean.
+    /// outside `second` its values are 0, as on bare paper.
     pub(super) fn best(
         &self,
         first: &Field,
@@ -343,6 +343,24 @@ mod tests {
             first.trust[i] = if i % WIDTH % 9 < 3 { 0.0 } else { 1.0 };
         }
         assert!(found(&first));
+    }
+
+    #[test]
+    fn a_shift_belongs_to_where_something_is() {
+        let half = |x: f64, y: f64| if x < 66.0 { waves(x, y) } else { 0.0 };
+        let first = field(|x, y| half(x as f64, y as f64));
+        let second = field(|x, y| half(x as f64 - 5.0, y as f64 + 3.0));
+        let correlator = Correlator::new(48, 20, 6);
+        let at = |first: &Field, second: &Field| {
+            let peak = correlator.best(first, second, [50, 50], Sign::Same);
+            peak.expect("a peak").at
+        };
+        // Columns 50 to 66 of 50 to 98.
+        let [x, y] = at(&first, &second);
+        assert!((x - 58.0).abs() < 2.0 && (y - 74.0).abs() < 4.0, "{x} {y}");
+        let whole = field(|x, y| waves(x as f64, y as f64));
+        let [x, _] = at(&whole, &whole);
+        assert!((x - 74.0).abs() < 4.0, "{x}");
     }
 
     #[test]

@@ -423,6 +423,10 @@ pub fn left_out(exhibit: &Exhibit, scene: &Scene) -> Vec<String> {
         "the reference has no retro-reflection, sheen or anisotropy: they are left out",
     );
     say(
+        scene.compare.is_some(),
+        "the reference compares nothing: it walks the scene's own sheet",
+    );
+    say(
         scene.overlays.iter().any(|(_, opacity)| *opacity > 0.0),
         "the reference draws no legend beside overlays",
     );

@@ -1,7 +1,8 @@
 //! Shadows of the mesostructure: rays cast over the height map.
 //!
 //! Between its texels the surface is the cubic B-spline over them, whose slope at a texel is the
-//! central difference of its neighbours, as a normal map has it. Planes between texels would be
+//! central difference of its neighbours, as a normal map has it, and which lowers a ridge of one
+//! texel by a third. Planes between texels would be
 //! steeper than any normal: where a facet just faces the lamp by its normal, its own plane would
 //! hide it, and half of a groove's wall would be dark for no reason.
 

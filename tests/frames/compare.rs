@@ -1,0 +1,185 @@
+//! Comparisons against pictures of their members, put together here.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use recto::{
+    colour::{delta_e00, lab_from_linear},
+    manifest::{
+        Exhibit, Scene,
+        comparison::Part,
+        exhibit::{CompareMode, Comparison, Member, SideName},
+    },
+    maps::ColourMapName,
+    optics::tier::Tier,
+    shot::{Darkroom, Picture},
+};
+
+use crate::{crop, room};
+
+const SIZE: [u32; 2] = [96, 64];
+const ASPECT: f64 = 1.5;
+/// Of an 8-bit display.
+const STEP: f32 = 1.0 / 255.0;
+
+struct Compared {
+    room: Darkroom,
+    exhibit: Arc<Exhibit>,
+    scene: Scene,
+}
+
+impl Compared {
+    /// The landscape before and after its restoration.
+    fn new(mode: CompareMode) -> Self {
+        let (exhibit, _) =
+            Exhibit::read(&crop::folder()).unwrap_or_else(|faults| panic!("{faults}"));
+        let mut scene = exhibit.scene("two-inks").expect("a scene").1.clone();
+        scene.compare = Some(Comparison::new(
+            mode,
+            vec![Member::State(0), Member::State(1)],
+        ));
+        Self {
+            room: room::darkroom(1),
+            exhibit: Arc::new(exhibit),
+            scene,
+        }
+    }
+
+    fn comparison(&mut self) -> &mut Comparison {
+        self.scene.compare.as_mut().expect("a comparison")
+    }
+
+    fn picture(&mut self) -> Picture {
+        room::picture(
+            &mut self.room,
+            &self.exhibit,
+            &self.scene,
+            Tier::Gallery,
+            SIZE,
+        )
+    }
+
+    /// Each member alone.
+    fn alone(&mut self, size: [u32; 2]) -> Vec<Picture> {
+        let members = self.exhibit.members(&self.scene);
+        members
+            .iter()
+            .map(|member| room::picture(&mut self.room, &self.exhibit, member, Tier::Gallery, size))
+            .collect()
+    }
+
+    fn parts(&self) -> Vec<Part> {
+        let parts = self.exhibit.parts(&self.scene, ASPECT);
+        parts.into_iter().map(|(_, part)| part).collect()
+    }
+}
+
+/// The middle of a pixel, in NDC.
+fn ndc(x: u32, y: u32) -> DVec2 {
+    let at = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    let size = DVec2::new(SIZE[0].into(), SIZE[1].into());
+    (at / size * 2.0 - 1.0) * DVec2::new(1.0, -1.0)
+}
+
+/// Of each pixel the member that is seen there.
+fn composed(alone: &[Picture], parts: &[Part]) -> Picture {
+    let mut composed = alone[0].clone();
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let at = (y * SIZE[0] + x) as usize;
+            let seen = parts.iter().position(|part| part.shows(ndc(x, y), ASPECT));
+            composed.pixels[at] = alone[seen.expect("a member")].pixels[at];
+        }
+    }
+    composed
+}
+
+#[test]
+fn a_curtain_is_its_members_bit_by_bit() {
+    let mut compared = Compared::new(CompareMode::Curtain);
+    let alone = compared.alone(SIZE);
+    for (at, angle) in [(0.37, 0.0), (0.61, 35.0), (0.5, 203.0)] {
+        compared.comparison().at = at;
+        compared.comparison().angle.0 = angle;
+        let (found, parts) = (compared.picture(), compared.parts());
+        let expected = composed(&alone, &parts);
+        assert_eq!(
+            room::largest_difference(&found, &expected),
+            0.0,
+            "{at} {angle}"
+        );
+        // Exchanged, the members are told apart.
+        let exchanged: Vec<Picture> = alone.iter().rev().cloned().collect();
+        let wrong = composed(&exchanged, &parts);
+        assert!(room::largest_difference(&found, &wrong) > 20.0 * STEP);
+    }
+}
+
+#[test]
+fn side_by_side_is_its_members_bit_by_bit() {
+    let mut compared = Compared::new(CompareMode::SideBySide);
+    compared.comparison().of.push(Member::Side(SideName::Verso));
+    let cell = [SIZE[0] / 3, SIZE[1]];
+    let (found, alone) = (compared.picture(), compared.alone(cell));
+    for (k, alone) in alone.iter().enumerate() {
+        for y in 0..cell[1] {
+            for x in 0..cell[0] {
+                let found = room::pixel(&found, k as u32 * cell[0] + x, y);
+                let level = |light: [f64; 3]| light.map(|v| (v.clamp(0.0, 1.0) * 65535.0).round());
+                let expected = room::pixel(alone, x, y);
+                assert_eq!(level(found), level(expected), "{k} {x} {y}");
+            }
+        }
+    }
+    let same = room::pixel(&alone[0], 16, 32) == room::pixel(&alone[2], 16, 32);
+    assert!(!same, "recto and verso are alike");
+}
+
+#[test]
+fn a_loupe_shows_the_other_member_larger() {
+    let mut compared = Compared::new(CompareMode::Loupe);
+    compared.comparison().magnify = 1.0;
+    compared.comparison().centre = DVec2::new(0.4, 0.6);
+    let alone = compared.alone(SIZE);
+    let expected = composed(&alone, &compared.parts());
+    assert!(room::largest_difference(&compared.picture(), &expected) < STEP);
+    // Magnified about its centre, which stays.
+    compared.comparison().magnify = 2.0;
+    let larger = compared.picture();
+    assert!(room::largest_difference(&larger, &expected) > 20.0 * STEP);
+}
+
+#[test]
+fn a_blend_mixes_light_and_a_difference_measures_it() {
+    let mut compared = Compared::new(CompareMode::Blend);
+    compared.comparison().at = 0.3;
+    let (found, alone) = (compared.picture(), compared.alone(SIZE));
+    let mixed = |share: f64| {
+        let mut mixed = alone[0].clone();
+        for (a, b) in mixed.pixels.iter_mut().zip(&alone[1].pixels) {
+            *a = std::array::from_fn(|c| {
+                ((1.0 - share) * f64::from(a[c]) + share * f64::from(b[c])) as f32
+            });
+        }
+        mixed
+    };
+    assert!(room::largest_difference(&found, &mixed(0.3)) < STEP);
+    assert!(room::largest_difference(&found, &mixed(0.4)) > STEP);
+
+    let mut compared = Compared::new(CompareMode::Difference);
+    let found = compared.picture();
+    let coded = |full: f64| {
+        let mut coded = alone[0].clone();
+        for (a, b) in coded.pixels.iter_mut().zip(&alone[1].pixels) {
+            let [a_lab, b_lab] =
+                [*a, *b].map(|light| lab_from_linear(light.map(|v| f64::from(v).clamp(0.0, 1.0))));
+            let share = (delta_e00(a_lab, b_lab) / full).min(1.0);
+            *a = ColourMapName::Magma.colour(share).map(|v| v as f32);
+        }
+        coded
+    };
+    assert_eq!(compared.scene.exposure.level, 1.0);
+    assert!(room::largest_difference(&found, &coded(10.0)) < STEP);
+    assert!(room::largest_difference(&found, &coded(11.0)) > STEP);
+    assert!(!found.legend.is_empty() && found.legend.iter().any(|texel| texel[3] > 0.0));
+}
