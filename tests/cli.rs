@@ -10,8 +10,11 @@ mod masks;
 mod missing;
 #[path = "cli/reference.rs"]
 mod reference;
+#[path = "cli/register.rs"]
+mod register;
 #[path = "cli/render.rs"]
 mod render;
+mod support;
 
 use std::{
     fs,

@@ -33,7 +33,6 @@ fn wrong_usage_ends_with_2() {
         render(["--size", "-1x10"]),
         render(["--side", "front"]),
         render(["--tier", "best"]),
-        render(["--compare", "curtain:state:a,state:b"]),
         render(["--all-scenes", "--scene=whole"]),
     ] {
         let output = run(&arguments);
@@ -42,6 +41,37 @@ fn wrong_usage_ends_with_2() {
         assert!(output.stdout.is_empty(), "{arguments:?}");
     }
     assert_eq!(files(sheet.root.path()), ["exhibit"]);
+}
+
+#[test]
+fn a_comparison_s_faults_are_all_named_and_nothing_is_written() {
+    let sheet = Sheet::new();
+    let out = sheet.out("x.png");
+    let compare = |spec: &str| {
+        let output = recto()
+            .args(["render", "--size", "16x16", "--compare", spec, "--out"])
+            .arg(&out)
+            .arg(sheet.exhibit())
+            .output();
+        code(&output.unwrap(), 1)
+    };
+    let stderr = compare("curtain:state:a,overlay:pictur");
+    assert!(stderr.contains("--compare.of[0]: found \"a\""), "{stderr}");
+    assert!(stderr.contains("did you mean \"picture\"?"), "{stderr}");
+    let stderr = compare("blend:side:recto,side:verso,overlay:picture");
+    assert!(
+        stderr.contains("found 3 members; allowed: 2 for this mode"),
+        "{stderr}"
+    );
+    for spec in [
+        "curtain",
+        "curtian:side:recto,side:verso",
+        "loupe:side:recto,side:recto",
+    ] {
+        assert!(compare(spec).contains("--compare"), "{spec}");
+    }
+    assert!(compare("curtain:side:recto,side:verso,at=2").contains("0 to 1"));
+    assert!(!out.exists());
 }
 
 #[test]
