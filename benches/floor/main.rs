@@ -21,7 +21,10 @@ use recto::{
     cost::{Floor, FloorPlugin, least, median, sheet},
     manifest::{
         Exhibit,
-        exhibit::{Ambient, Camera as SceneCamera, Lamp, LampKind, Scene, SideName, Surface},
+        exhibit::{
+            Ambient, Camera as SceneCamera, CompareMode, Comparison, Lamp, LampKind, Member, Scene,
+            SideName, Surface,
+        },
     },
     optics::tier::Tier,
     shot::{Darkroom, Picture},
@@ -59,6 +62,9 @@ enum Setting {
     Raking,
     Rectangle,
     LightTable,
+    /// Two states of it under a curtain, and beside each other.
+    Curtain,
+    SideBySide,
     /// A flat side with a picture and nothing else.
     PaperAlone,
 }
@@ -87,7 +93,7 @@ const OF_FLOOR: usize = 0;
 const OF_GALLERY: usize = 3;
 const OF_STUDY: usize = 4;
 const OF_HAND: usize = 14;
-const CASES: [Case; 16] = [
+const CASES: [Case; 18] = [
     case("the floor", Sheet::Floor, Setting::Plain, OF_FLOOR),
     case(
         "lambert",
@@ -119,6 +125,13 @@ const CASES: [Case; 16] = [
     case("study, table", STUDY, Setting::LightTable, OF_STUDY),
     case("paper by hand", Sheet::ByHand, Setting::PaperAlone, OF_HAND),
     case("study, paper", STUDY, Setting::PaperAlone, OF_HAND),
+    case("gallery, curtain", GALLERY, Setting::Curtain, OF_GALLERY),
+    case(
+        "gallery, side by side",
+        GALLERY,
+        Setting::SideBySide,
+        OF_GALLERY,
+    ),
 ];
 
 fn main() -> Result<(), Anything> {
@@ -239,7 +252,9 @@ impl Setting {
             })
         };
         exhibit.lamps = match self {
-            Self::Plain | Self::PaperAlone => vec![distant(45.0, 135.0)],
+            Self::Plain | Self::PaperAlone | Self::Curtain | Self::SideBySide => {
+                vec![distant(45.0, 135.0)]
+            }
             Self::TwoLamps => vec![distant(45.0, 135.0), distant(45.0, -135.0)],
             Self::Raking => vec![distant(10.0, 135.0)],
             Self::Rectangle => vec![lamp(LampKind::Rectangle {
@@ -254,6 +269,13 @@ impl Setting {
         };
         let mut scene = standard_scene(&exhibit);
         scene.lamps = (0..exhibit.lamps.len()).collect();
+        let mode = match self {
+            Self::Curtain => Some(CompareMode::Curtain),
+            Self::SideBySide => Some(CompareMode::SideBySide),
+            _ => None,
+        };
+        let states = || vec![Member::State(0), Member::State(1)];
+        scene.compare = mode.map(|mode| Comparison::new(mode, states()));
         if self == Self::PaperAlone {
             let drawing = &mut exhibit.drawings[scene.drawing];
             drawing.surface = Surface::Flat;
@@ -273,6 +295,7 @@ fn standard_scene(exhibit: &Exhibit) -> Scene {
     scene.side = SideName::Recto;
     scene.state = None;
     scene.overlays.clear();
+    scene.compare = None;
     scene.lamps = vec![0];
     scene.ambient = Ambient {
         illuminance: Lux(0.0),
