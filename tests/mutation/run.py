@@ -162,8 +162,8 @@ def generate(work):
         shutil.copy(ROOT / f"src/{module}.rs", crate / f"src/{module}.rs")
     # What of the narrowing needs no manifest and no maps.
     uniform = (ROOT / "src/sheet/uniform.rs").read_text().split("/// Twin of `Paper`.")[0]
-    uniform = re.sub(r" {4}(?:manifest|maps)::[^\n]*\n|mod media;\n|pub use media::[^\n]*\n", "",
-                     uniform)
+    uniform = re.sub(r" {4}manifest::\{\n.*?\n {4}\},\n| {4}(?:manifest|maps)::[^\n]*\n"
+                     r"|mod media;\n|pub use media::[^\n]*\n", "", uniform, flags=re.S)
     write(crate / "src/sheet/uniform.rs", uniform)
     shaders = ROOT / "shaders"
     write(crate / "src/lib.rs", f'''
