@@ -457,8 +457,8 @@ fn march(l: vec3<f32>, rise: f32, side: vec2<f32>, width: f32) -> Horizon {
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef CUT
-    // First: a device that jumps spends nothing on what another member shows. Lavapipe masks and does
-    // not (a curtain costs 1.8 of one sheet there).
+    // First, so that a device may spare what another member shows. Lavapipe does not: a curtain costs
+    // 1.8 of one sheet there.
     if is_cut_away(in.seen) {
         discard;
     }
