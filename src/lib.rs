@@ -24,7 +24,7 @@
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
 //! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
-//! `colour`, `maps`, `manifest`, `needs`, `optics`, `reference`, `tradeoff` and `sample` never name
+//! `colour`, `maps`, `measure`, `manifest`, `needs`, `optics`, `reference`, `tradeoff` and `sample` never name
 //! Bevy; `tests/layers.rs` holds the table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes

@@ -5,7 +5,7 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::{
-    exhibit::{Camera, CompareMode, Comparison, Exhibit, Member, Scene},
+    exhibit::{Camera, CompareMode, Comparison, Drawing, Exhibit, Member, Scene, SideName},
     frames,
 };
 
@@ -192,14 +192,10 @@ impl Exhibit {
         };
         match member {
             Member::State(state) => shown.state = Some(state),
-            Member::Side(side) if side == scene.side => {}
-            Member::Side(side) => {
-                shown.side = side;
-                let centre = shown.camera.centre_mm;
-                shown.camera.centre_mm = frames::other_side(centre, drawing.size_mm, drawing.flip);
-                shown.overlays.clear();
-            }
+            Member::Side(side) => turn(&mut shown, drawing, side),
+            // On the side that it belongs to.
             Member::Overlay(overlay) => {
+                turn(&mut shown, drawing, drawing.overlays[overlay].side);
                 shown.overlays.retain(|(index, _)| *index != overlay);
                 shown.overlays.push((overlay, 1.0));
             }
@@ -208,7 +204,7 @@ impl Exhibit {
                 let size_mm = self.drawings[other].size_mm;
                 let offset = scene.camera.centre_mm - drawing.size_mm / 2.0;
                 shown.drawing = other;
-                shown.side = super::exhibit::SideName::Recto;
+                shown.side = SideName::Recto;
                 shown.state = None;
                 shown.overlays.clear();
                 shown.camera = Camera {
@@ -219,6 +215,17 @@ impl Exhibit {
         }
         shown
     }
+}
+
+/// Shows the same place of `side`, without what lies on the other.
+fn turn(scene: &mut Scene, drawing: &Drawing, side: SideName) {
+    if side == scene.side {
+        return;
+    }
+    scene.side = side;
+    let centre = scene.camera.centre_mm;
+    scene.camera.centre_mm = frames::other_side(centre, drawing.size_mm, drawing.flip);
+    scene.overlays.clear();
 }
 
 #[cfg(test)]

@@ -50,7 +50,7 @@ pub const TONE_TERMS: usize = 5;
 /// Share of ρ by which the paper's own light is returned from its boundary: it comes up a little
 /// steeper than a perfect diffuser's. Found by walks through sheets that absorb nothing, with ink of
 /// τ 0 to 2 on either side and both (n = 1.5, α = .4, d .05 and .165 mm, light at 0 and 60°): all
-/// within 4.7%, with 1 within 8.9%.
+/// within 5.0%.
 pub const KEPT_WITHIN: f64 = 0.973;
 
 /// What crosses the paper between two boundaries of internal reflectances ρ_f, before it, and ρ_b,

@@ -64,23 +64,26 @@ impl Shown {
     /// The sheets that share the picture, turned as what is shown is turned: one, unless its scene
     /// compares several.
     pub fn members(&self) -> Vec<Shared> {
-        let exhibit = &self.exhibit;
-        let rest = |scene: &Scene| exhibit.drawing_of(scene).rest_pose(scene.side);
-        let turned = self.pose * rest(&self.scene).inverse();
-        let parts = exhibit.parts(&self.scene, self.aspect).into_iter();
-        let shared = parts.map(|(scene, part)| {
-            let pose = turned * rest(&scene);
-            Shared { scene, part, pose }
+        let parts = self.exhibit.parts(&self.scene, self.aspect).into_iter();
+        let shared = parts.map(|(scene, part)| Shared {
+            pose: self.pose_of(&scene),
+            scene,
+            part,
         });
         shared.collect()
+    }
+
+    /// How the sheet of another scene lies when it is turned as this one is.
+    fn pose_of(&self, scene: &Scene) -> DQuat {
+        let rest = |scene: &Scene| self.exhibit.drawing_of(scene).rest_pose(scene.side);
+        self.pose * rest(&self.scene).inverse() * rest(scene)
     }
 
     /// Member `k` of the comparison that is shown, alone and whole; `None` where there is none.
     pub fn alone(&self, k: usize) -> Option<Self> {
         let scene = self.exhibit.members(&self.scene).into_iter().nth(k)?;
-        let rest = |scene: &Scene| self.exhibit.drawing_of(scene).rest_pose(scene.side);
         Some(Self {
-            pose: self.pose * rest(&self.scene).inverse() * rest(&scene),
+            pose: self.pose_of(&scene),
             scene,
             ..self.clone()
         })
