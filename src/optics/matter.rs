@@ -388,16 +388,21 @@ impl BodyLight {
         };
         let albedo = super::tier::albedo_of(&photographed, mean).max(DVec3::splat(1e-3));
         let (r_p, t_p) = (study.through.reflected, study.through.transmitted);
+        // The surface of the layer on top; behind, the paper's own.
+        let eta = body.index;
+        let mean_f = mean_under(paper, eta);
+        let r_f = internal(&mean_f, eta);
         // Between both boundaries, all passes counted.
-        let crossing = |front: f64, back: f64, t: f64| {
-            let passes = (1.0 - front * r_i) * (1.0 - back * r_i) - t * t * r_i * r_i;
+        let crossing = |front: f64, r_f: f64, back: f64, t: f64| {
+            let passes = (1.0 - front * r_f) * (1.0 - back * r_i) - t * t * r_f * r_i;
             t / passes.max(1e-6)
         };
+        let narrower = (paper.eta / eta).powi(2);
         let below = backed(study, r_i);
         let mut through = DVec3::ZERO;
         for c in 0..3 {
-            let from_within = albedo[c] * paper.eta * paper.eta * mean.capture;
-            let r_b = (from_within / (1.0 + r_i * from_within)).min(1.0);
+            let from_within = albedo[c] * eta * eta * mean_f.capture;
+            let r_b = (from_within / (1.0 + r_f * from_within)).min(1.0);
             let thickness = body.scattering_per_mm * body.thickness_um / UM_PER_MM;
             let layer = layer_photographed(thickness, r_b, below[c]);
             // Both layers, all passes between them counted (Kubelka's sum).
@@ -405,8 +410,8 @@ impl BodyLight {
             let t = layer.transmitted * t_p[c] * between;
             let front = layer.reflected + layer.transmitted.powi(2) * r_p[c] * between;
             let back = r_p[c] + t_p[c].powi(2) * layer.reflected * between;
-            let alone = crossing(r_p[c], r_p[c], t_p[c]).max(1e-12);
-            through[c] = (crossing(front, back, t) / alone).clamp(0.0, 1.0);
+            let alone = crossing(r_p[c], r_i, r_p[c], t_p[c]).max(1e-12);
+            through[c] = (narrower * crossing(front, r_f, back, t) / alone).clamp(0.0, 1.0);
         }
         Self { albedo, through }
     }

@@ -402,6 +402,53 @@ fn darkness_is_ink_where_a_film_lies_and_paper_elsewhere() {
     }
 }
 
+/// Of what white paint on white paper passes. The paint's absorption lies on top of the paper, the
+/// judge's all over one slab, which is the same where there is little.
+const PAINTED: f64 = 0.05;
+
+#[test]
+fn white_paint_on_white_paper_passes_what_one_slab_of_both_does() {
+    const ALPHA: f64 = 0.6;
+    const INDEX: f64 = 1.5;
+    const WHITE: f64 = 0.86;
+    let paper = Slab::rag_paper(Micrometres(165.0));
+    let surface = Surface::new(DVec3::splat(WHITE), ALPHA, INDEX, 1.0);
+    let table = InterfaceTable::at_roughness(ALPHA, INDEX, 1.0);
+    let mean = table.mean_at(ALPHA);
+    let paths = Arc::new(PathTable::at_roughness(ALPHA, INDEX));
+    let study = Study::new(&surface, &table, paths, paper);
+    let mut media = side_media(&["white-gouache"]);
+    let paint = &mut media.bodies[0];
+    (paint.index, paint.roughness, paint.albedo) = (INDEX, ALPHA, [WHITE; 3]);
+    let paint_mm = paint.thickness_um * 1e-3;
+    let paint_depth = paint.scattering_per_mm * paint_mm;
+    let passed = |layers: &Layers| {
+        let flux = reflectance_transmittance(layers, &[Absorption::NONE], 1.0, 100_000, 5);
+        flux[0].transmitted.mean
+    };
+    let bare = Layers {
+        n: INDEX,
+        alpha: [ALPHA; 2],
+        sigma_s: paper.scattering,
+        phase: Phase::single(1.0 / 3.0),
+        thickness_mm: paper.thickness,
+    };
+    let thickness_mm = paint_mm + paper.thickness;
+    let paper_depth = paper.scattering * (2.0 / 3.0) * paper.thickness;
+    let painted = Layers {
+        sigma_s: (paint_depth + paper_depth) / thickness_mm,
+        phase: Phase::ISOTROPIC,
+        thickness_mm,
+        ..bare
+    };
+    let walked = passed(&painted) / passed(&bare);
+    let share = Media::new(&media, &surface, &mean, &study).body_through.x;
+    assert!((share / walked - 1.0).abs() < PAINTED, "{share} {walked}");
+    media.bodies[0].thickness_um /= 2.0;
+    let thin = Media::new(&media, &surface, &mean, &study).body_through.x;
+    assert!((thin / walked - 1.0).abs() > PAINTED, "{thin} {walked}");
+}
+
 #[test]
 fn gouache_holds_light_back_and_thicker_gouache_more() {
     let through = |thickness_um: f64, scattering: f64| {
@@ -409,6 +456,8 @@ fn gouache_holds_light_back_and_thicker_gouache_more() {
         let mut media = side_media(&["white-gouache"]);
         media.bodies[0].thickness_um = thickness_um;
         media.bodies[0].scattering_per_mm = scattering;
+        // One of another index would return more light into the paper, however thin.
+        media.bodies[0].index = side.surface.eta;
         Media::new(&media, &side.surface, &side.mean, &side.study).body_through
     };
     let usual = through(25.0, 400.0);

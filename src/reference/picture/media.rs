@@ -66,7 +66,8 @@ pub(super) struct Media {
     first: Field,
     more: Option<Field>,
     sorts: Vec<Sort>,
-    /// The first body colour on the side, which stands for all.
+    /// The mean of the side's body colours, as [`crate::optics::matter::Media`] has it: their maps
+    /// are one.
     pub body: Option<BodyConstants>,
 }
 
@@ -121,10 +122,15 @@ impl Media {
                 _ => None,
             })
             .collect();
-        let body = used.iter().find_map(|&medium| match matter(medium) {
-            Matter::Body(body) => Some(body),
-            _ => None,
-        });
+        let mut bodies = Vec::new();
+        for &medium in &used {
+            if let Matter::Body(body) = matter(medium)
+                && !bodies.contains(&body)
+            {
+                bodies.push(body);
+            }
+        }
+        let body = mean_body(&bodies);
         Ok(Some(Self {
             first,
             more,
@@ -208,6 +214,22 @@ impl Media {
         }
         divided
     }
+}
+
+/// The colour that scatters and photographs as `bodies` do in the mean; `None` without any.
+fn mean_body(bodies: &[BodyConstants]) -> Option<BodyConstants> {
+    let mean = |of: &dyn Fn(&BodyConstants) -> f64| {
+        bodies.iter().map(of).sum::<f64>() / bodies.len() as f64
+    };
+    let thickness_um = mean(&|body| body.thickness_um);
+    let depth = mean(&|body| body.scattering_per_mm * body.thickness_um);
+    (!bodies.is_empty()).then(|| BodyConstants {
+        index: mean(&|body| body.index),
+        roughness: mean(&|body| body.roughness),
+        scattering_per_mm: depth / thickness_um,
+        thickness_um,
+        albedo: std::array::from_fn(|channel| mean(&|body| body.albedo[channel])),
+    })
 }
 
 /// The photograph of a place, divided: the albedo of what lies between its grains, and a grain

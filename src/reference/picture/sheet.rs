@@ -330,15 +330,20 @@ fn layers_of(paper: &Paper) -> Layers {
     }
 }
 
-/// A body colour in place of paper: as thick as both together, so that it hides what it lies on
-/// and can photograph as white as it does.
+/// A body colour and the paper under it as one slab that scatters as much as both together: dense
+/// enough to photograph as white as the colour does, and no darker against the light than they are.
+/// Its order is lost: what absorbs is spread evenly over both.
 fn body_slab(body: &BodyConstants, paper: &Layers) -> Layers {
+    let body_thickness_mm = body.thickness_um / UM_PER_MM;
+    let thickness_mm = body_thickness_mm + paper.thickness_mm;
+    let reduced = paper.sigma_s * (1.0 - paper.phase.mean_cosine());
+    let depth = body.scattering_per_mm * body_thickness_mm + reduced * paper.thickness_mm;
     Layers {
         n: body.index,
         alpha: [body.roughness, paper.alpha[1]],
-        sigma_s: body.scattering_per_mm,
+        sigma_s: depth / thickness_mm,
         phase: Phase::ISOTROPIC,
-        thickness_mm: body.thickness_um / UM_PER_MM + paper.thickness_mm,
+        thickness_mm,
     }
 }
 
