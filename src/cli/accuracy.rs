@@ -232,7 +232,11 @@ impl Display for SceneAccuracy {
             }
         }
         self.list(f, true, &format!("modelled by {tier}, and without it:"))?;
-        self.list(f, false, &format!("left out by {tier}, which costs:"))?;
+        self.list(
+            f,
+            false,
+            &format!("left out by {tier}, which costs (each by itself; together not their sum):"),
+        )?;
         write!(f, "\n  left out by every tier: {}", self.never_modelled)?;
         for remark in &self.remarks {
             write!(f, "\n  for this prediction {remark}")?;

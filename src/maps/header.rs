@@ -38,7 +38,7 @@ pub fn probe(path: &Path) -> Result<Header, MapError> {
 /// # Errors
 /// As [`probe`], and [`MapError::Damaged`].
 pub fn verify(path: &Path) -> Result<Missing, MapError> {
-    Ok(decode::Picture::open(path)?.decode()?.missing)
+    Ok(decode::read(path)?.missing)
 }
 
 /// Does the same for a map of colour, and finds colour profiles that cannot be used.
@@ -46,7 +46,7 @@ pub fn verify(path: &Path) -> Result<Missing, MapError> {
 /// # Errors
 /// As [`verify`], and [`MapError::Profile`].
 pub fn verify_colour(path: &Path, encoding: ColourEncoding) -> Result<Missing, MapError> {
-    let raster = decode::Picture::open(path)?.decode()?;
+    let raster = decode::read(path)?;
     Linear::new(path, &raster, encoding)?;
     Ok(raster.missing)
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::{
     ColourMapName, MapError, Missing, Pyramid,
-    decode::{Picture, Raster, Samples},
+    decode::{self, Raster, Samples},
     load::{decode, finish},
     pyramid,
 };
@@ -73,7 +73,7 @@ pub fn verify_legend(path: &Path, legend: &[[u8; 3]]) -> Result<(Missing, Colour
 pub fn load_media_weights(path: &Path, count: usize) -> Result<Pyramid, MapError> {
     check_weights(path, "media", count)?;
     // Every channel is an amount of its own, a fourth one too: none multiplies the others.
-    let raster = Picture::open(path)?.decode()?;
+    let raster = decode::read(path)?;
     if raster.channels < count {
         return Err(MapError::unsupported(
             path,

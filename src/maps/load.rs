@@ -10,7 +10,7 @@ use half::f16;
 
 use super::{
     ColourEncoding, MapError, NormalY, Pyramid, Texels,
-    decode::{Picture, Raster, Samples},
+    decode::{self, Raster, Samples},
     linear::Linear,
     pyramid::{self, Texel},
 };
@@ -249,7 +249,7 @@ fn scalar<T: Texel>(raster: &Raster, value: impl Fn(f32, f32) -> f32 + Sync) -> 
 
 /// A picture whose colours do not depend on its alpha, whichever way its file stores them.
 pub(super) fn decode(path: &Path) -> Result<Raster, MapError> {
-    let mut raster = Picture::open(path)?.decode()?;
+    let mut raster = decode::read(path)?;
     raster.unmultiply();
     Ok(raster)
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::{
     MAX_WEIGHTS, MapError, Pyramid,
-    decode::{Picture, Raster},
+    decode::{self, Raster},
     legend::{check_weights, find, for_each_colour},
     load, pyramid,
 };
@@ -232,7 +232,7 @@ impl<'l, T: Copy> Layer<'l, T> {
                 legend.iter().map(|(colour, _)| *colour).collect(),
             ),
             // Every channel is an amount of its own, a fourth one too.
-            MediaChannels::Weights(_) => (Picture::open(path)?.decode()?, Vec::new()),
+            MediaChannels::Weights(_) => (decode::read(path)?, Vec::new()),
         };
         if matches!(channels, MediaChannels::Weights(_)) && raster.channels < each.len() {
             return Err(MapError::unsupported(

@@ -4,8 +4,7 @@
 const PLACES: usize = 8;
 
 /// Pixels of a float map in which a value was NaN or infinite. Such a pixel is missing: it takes
-/// what the nearest pixel of its row has, or of the nearest row where its own has none; a map
-/// without any number is 0.
+/// what the nearest pixel of its row has, or of the nearest row where its own has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Missing {
     /// How many pixels.

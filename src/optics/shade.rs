@@ -195,3 +195,64 @@ pub fn beams(tier: Tier, light: &Light, p: DVec3) -> Vec<Beam> {
     };
     incidences.into_iter().map(beam).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::optics::medium::MediumId;
+
+    /// Even light is what beams from everywhere give together. The surface's own mirroring of
+    /// them is coarser than this sum: matte paper has none to speak of.
+    #[test]
+    fn the_rooms_light_is_that_of_beams_from_everywhere() {
+        const STEPS: u32 = 48;
+        let laid = "laid".parse::<MediumId>().expect("laid paper").medium();
+        let albedo = DVec3::new(0.8, 0.5, 0.2);
+        let behind = Behind {
+            bare: albedo,
+            other: albedo,
+            other_bare: albedo,
+            clear: 1.0,
+        };
+        let mut beams = Vec::new();
+        for i in 0..STEPS {
+            // Of equal irradiance: dμ² is even.
+            let mu = ((f64::from(i) + 0.5) / f64::from(STEPS)).sqrt();
+            for j in 0..STEPS {
+                let (sin, cos) = (TAU * f64::from(j) / f64::from(STEPS)).sin_cos();
+                let across = (1.0 - mu * mu).sqrt();
+                let incidence = Incidence {
+                    l: DVec3::new(across * cos, across * sin, mu),
+                    e: DVec3::splat(PI / f64::from(STEPS * STEPS) / mu),
+                };
+                let visible = 1.0;
+                beams.push(Beam { incidence, visible });
+            }
+        }
+        let ambient = Illumination {
+            ambient: DVec3::splat(PI),
+            ..Illumination::default()
+        };
+        let beams = Illumination {
+            beams,
+            ..Illumination::default()
+        };
+        for (tier, within) in [
+            (Tier::Lambert, 1e-6),
+            (Tier::Gallery, 0.02),
+            (Tier::Study, 0.02),
+        ] {
+            let spot = Spot::flat(Specimen::new(laid, albedo), behind);
+            for tilt in [0.0_f64, 0.7] {
+                let v = DVec3::new(tilt.sin(), 0.0, tilt.cos());
+                let [even, sum] = [&ambient, &beams].map(|light| spot.radiance(tier, v, light));
+                let off = (even / sum - 1.0).abs().max_element();
+                assert!(off < within, "{tier} {tilt}: {even} {sum}");
+                // A tenth less light is no longer the same.
+                assert!((0.9 * even / sum - 1.0).abs().max_element() > within);
+            }
+        }
+    }
+}

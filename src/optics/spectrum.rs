@@ -364,6 +364,52 @@ mod tests {
         );
     }
 
+    /// As CIE 015:2018 states them beside the coordinates.
+    #[test]
+    fn lamps_have_the_temperatures_that_are_published() {
+        use Illuminant as I;
+        let published = [
+            (I::F1, 6430.0),
+            (I::F2, 4230.0),
+            (I::F3, 3450.0),
+            (I::F4, 2940.0),
+            (I::F5, 6350.0),
+            (I::F6, 4150.0),
+            (I::F7, 6500.0),
+            (I::F8, 5000.0),
+            (I::F9, 4150.0),
+            (I::F10, 5000.0),
+            (I::F11, 4000.0),
+            (I::F12, 3000.0),
+            (I::LedB1, 2733.0),
+            (I::LedB2, 2998.0),
+            (I::LedB3, 4103.0),
+            (I::LedB4, 5109.0),
+            (I::LedB5, 6598.0),
+            (I::LedBh1, 2851.0),
+            (I::LedRgb1, 2840.0),
+            (I::LedV1, 2724.0),
+            (I::LedV2, 4070.0),
+            (I::C, 6774.0),
+            (I::D50, 5003.0),
+            (I::D55, 5503.0),
+            (I::D75, 7504.0),
+        ];
+        // McCamy 1992; and, in y, the line of daylight of CIE 015:2018, near which all of them are.
+        let sound = |[x, y]: [f64; 2], kelvin: f64| {
+            let n = (x - 0.332) / (0.1858 - y);
+            let mccamy = ((449.0 * n + 3525.0) * n + 6823.3) * n + 5520.33;
+            let daylight = (2.87 - 3.0 * x) * x - 0.275;
+            (mccamy / kelvin - 1.0).abs() < 0.003 && (y - daylight).abs() < 0.016
+        };
+        for (illuminant, kelvin) in published {
+            let [x, y] = illuminant.xy();
+            assert!(sound([x, y], kelvin), "{illuminant:?}");
+            // A tenth off in either coordinate is another lamp.
+            assert!(!sound([1.1 * x, y], kelvin) && !sound([x, 1.1 * y], kelvin));
+        }
+    }
+
     #[test]
     fn a_line_is_on_the_spectral_locus_and_any_scale_is_the_same() {
         // 520 nm: x .0743, y .8338 (CIE 018:2019).

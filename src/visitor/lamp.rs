@@ -12,6 +12,8 @@ use crate::{
 
 /// A hand brings no lamp lower than this, in degrees: below, only dust is lit.
 pub const LOWEST_DEG: f64 = 3.0;
+/// Between a large lamp's edge and the table.
+const CLEARANCE_MM: f64 = 10.0;
 /// Higher than this, in degrees, a direction is not worth naming.
 const OVERHEAD_DEG: f64 = 88.0;
 
@@ -51,8 +53,30 @@ impl LampPlace {
         })
     }
 
-    /// Puts `lamp` here, at the distance that it has.
+    /// Puts `lamp` here, at the distance that it has; a large one no lower than that all of it
+    /// stays above the table.
     pub fn put(self, lamp: &mut Lamp) {
+        let across_mm = match lamp.kind {
+            LampKind::Rectangle { size_mm, .. } => size_mm.length(),
+            LampKind::Disc { diameter_mm, .. } => diameter_mm,
+            _ => 0.0,
+        };
+        if let LampKind::Rectangle { position_mm, .. } | LampKind::Disc { position_mm, .. } =
+            lamp.kind
+        {
+            // It faces the sheet: what stands below its middle is half of it, foreshortened.
+            let lowest = (across_mm / 2.0 + CLEARANCE_MM).atan2(position_mm.length());
+            let elevation_deg = self.elevation_deg.max(lowest.to_degrees());
+            return Self {
+                elevation_deg,
+                ..self
+            }
+            .place(lamp);
+        }
+        self.place(lamp);
+    }
+
+    fn place(self, lamp: &mut Lamp) {
         let towards = direction(Degrees(self.elevation_deg), Degrees(self.azimuth_deg));
         match &mut lamp.kind {
             LampKind::Distant {
@@ -126,7 +150,7 @@ mod tests {
     use super::*;
     use crate::{
         manifest::exhibit::{LampColour, Wording},
-        units::{Candela, Kelvin},
+        units::{Candela, Kelvin, Nits},
     };
 
     fn raking() -> LampPlace {
@@ -154,6 +178,26 @@ mod tests {
             overhead.raised(12.0).words(),
             "lamp 12° high, from the left (180°)"
         );
+    }
+
+    #[test]
+    fn a_large_lamp_stays_above_the_table() {
+        let mut lamp = Lamp {
+            id: "large".into(),
+            title: Wording::default(),
+            colour: LampColour::Temperature(Kelvin(3000.0)),
+            kind: LampKind::Disc {
+                luminance: Nits(1000.0),
+                position_mm: DVec3::new(0.0, 0.0, 400.0),
+                aim_mm: DVec3::ZERO,
+                diameter_mm: 300.0,
+            },
+        };
+        raking().put(&mut lamp);
+        let place = LampPlace::of(&lamp).expect("it has a place");
+        let lowest = 400.0 * place.elevation_deg.to_radians().sin()
+            - 150.0 * place.elevation_deg.to_radians().cos();
+        assert!((5.0..15.0).contains(&lowest), "{lowest}");
     }
 
     #[test]

@@ -227,6 +227,27 @@ fn nan_and_infinity_never_leave_the_loader() {
     }
 }
 
+#[test]
+fn a_map_without_any_number_is_damaged() {
+    let folder = folder();
+    let path = folder.path().join("nothing.exr");
+    let some = |last| {
+        [
+            [f32::NAN; 3],
+            [f32::INFINITY, 0.0, 0.0],
+            [f32::NAN; 3],
+            last,
+        ]
+    };
+    encode::save_exr_rgb(&path, 2, 2, &some([f32::NAN; 3])).expect("written");
+    let error = maps::load_colour(&path, ColourEncoding::Linear).expect_err("no number");
+    assert!(error.to_string().contains("none of its pixels"), "{error}");
+    assert!(verify(&path).is_err());
+    // One is enough.
+    encode::save_exr_rgb(&path, 2, 2, &some([0.5; 3])).expect("written");
+    assert_eq!(verify(&path).expect("a number").count, 3);
+}
+
 /// The windows are those that the samples' own description states.
 #[test]
 fn exr_pictures_fill_their_display_window() {

@@ -196,7 +196,7 @@ impl Picture {
     }
 
     /// The upright picture, its missing pixels filled.
-    pub fn decode(self) -> Result<Raster, MapError> {
+    fn decode(self) -> Result<Raster, MapError> {
         let mut raster = match self {
             Self::Png(picture) => {
                 let orientation = picture.orientation;
@@ -217,6 +217,18 @@ impl Picture {
         }
         Ok(raster)
     }
+}
+
+/// The upright picture of a file, its missing pixels filled.
+///
+/// # Errors
+/// Whatever [`MapError`] says of files, and a picture in which no pixel is a number.
+pub fn read(path: &Path) -> Result<Raster, MapError> {
+    let raster = Picture::open(path)?.decode()?;
+    if raster.missing.count == (raster.width * raster.height) as u64 {
+        return Err(MapError::damaged(path, "none of its pixels is a number"));
+    }
+    Ok(raster)
 }
 
 /// Refuses sizes that no texture can have, before anything is allocated.
