@@ -2,6 +2,8 @@
 // paper_bsdf.wgsl and paper_media.wgsl. Everything happens in the local frame of one side, in mm: x right, y up,
 // z out of the side. The definitions (#ifdef) are set from `Terms` in src/sheet/material.rs.
 
+enable clip_distances;
+
 #import "embedded://recto/paper_bsdf.wgsl"::{
     ALPHA_MIN, INV_PI, MU_MIN,
     Facing, Film, Incidence, Interface, InterfaceMean, InterfaceRow, Light, Seen, Split,
@@ -55,6 +57,9 @@
 
 // Largest value a half-float target holds.
 const RADIANCE_MAX: f32 = 65504.0;
+
+// Of half the picture.
+const CLIP_MARGIN: f32 = 0.01;
 
 // Texture coordinates of a map: rows applied to (x, y, 1) of the side frame.
 struct MapPlace {
@@ -227,6 +232,11 @@ struct Varyings {
     // x, y and w of the clip space.
     @location(5) seen: vec3<f32>,
 #endif
+#ifdef CLIPS
+    // Distances to the lines of the part: what lies well beyond one of them is not rasterised. The
+    // edge itself is the fragment's, as rasterisers round places.
+    @builtin(clip_distances) within: array<f32, 4>,
+#endif
 }
 
 fn place_uv(place: MapPlace, side: vec2<f32>) -> vec2<f32> {
@@ -247,6 +257,11 @@ fn vertex(in: Vertex) -> Varyings {
 #endif
 #ifdef CUT
     out.seen = out.clip.xyw;
+#endif
+#ifdef CLIPS
+    for (var k = 0; k < 4; k++) {
+        out.within[k] = dot(paper.cut_lines[k].xyz, out.seen) + CLIP_MARGIN * out.seen.z;
+    }
 #endif
     return out;
 }
@@ -454,11 +469,10 @@ fn march(l: vec3<f32>, rise: f32, side: vec2<f32>, width: f32) -> Horizon {
 }
 #endif
 
+#ifndef CLIPS
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef CUT
-    // First, so that a device may spare what another member shows. Lavapipe does not: a curtain costs
-    // 1.8 of one sheet there.
     if is_cut_away(in.seen) {
         discard;
     }
@@ -1004,3 +1018,4 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #endif
     return vec4(min(colour, vec3(RADIANCE_MAX)), 1.0);
 }
+#endif

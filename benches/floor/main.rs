@@ -9,6 +9,7 @@ mod hand;
 
 use std::{
     error::Error,
+    f64::consts::SQRT_2,
     path::{Path, PathBuf},
     process::{Command, Stdio},
     sync::Arc,
@@ -65,6 +66,8 @@ enum Setting {
     /// Two states of it under a curtain, and beside each other.
     Curtain,
     SideBySide,
+    /// From as far away that the sheet fills as many pixels as both do beside each other.
+    Farther,
     /// A flat side with a picture and nothing else.
     PaperAlone,
 }
@@ -93,7 +96,8 @@ const OF_FLOOR: usize = 0;
 const OF_GALLERY: usize = 3;
 const OF_STUDY: usize = 4;
 const OF_HAND: usize = 14;
-const CASES: [Case; 18] = [
+const OF_FARTHER: usize = 17;
+const CASES: [Case; 19] = [
     case("the floor", Sheet::Floor, Setting::Plain, OF_FLOOR),
     case(
         "lambert",
@@ -126,11 +130,12 @@ const CASES: [Case; 18] = [
     case("paper by hand", Sheet::ByHand, Setting::PaperAlone, OF_HAND),
     case("study, paper", STUDY, Setting::PaperAlone, OF_HAND),
     case("gallery, curtain", GALLERY, Setting::Curtain, OF_GALLERY),
+    case("gallery, farther", GALLERY, Setting::Farther, OF_FARTHER),
     case(
         "gallery, side by side",
         GALLERY,
         Setting::SideBySide,
-        OF_GALLERY,
+        OF_FARTHER,
     ),
 ];
 
@@ -252,7 +257,7 @@ impl Setting {
             })
         };
         exhibit.lamps = match self {
-            Self::Plain | Self::PaperAlone | Self::Curtain | Self::SideBySide => {
+            Self::Plain | Self::PaperAlone | Self::Curtain | Self::SideBySide | Self::Farther => {
                 vec![distant(45.0, 135.0)]
             }
             Self::TwoLamps => vec![distant(45.0, 135.0), distant(45.0, -135.0)],
@@ -276,6 +281,9 @@ impl Setting {
         };
         let states = || vec![Member::State(0), Member::State(1)];
         scene.compare = mode.map(|mode| Comparison::new(mode, states()));
+        if self == Self::Farther {
+            scene.camera.width_mm *= SQRT_2;
+        }
         if self == Self::PaperAlone {
             let drawing = &mut exhibit.drawings[scene.drawing];
             drawing.surface = Surface::Flat;

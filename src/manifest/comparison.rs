@@ -104,7 +104,7 @@ impl Part {
     }
 
     /// What a loupe shows (`inside`), larger by `magnify` about its centre, or leaves.
-    fn loupe(inside: bool, comparison: &Comparison) -> Self {
+    fn loupe(inside: bool, comparison: &Comparison, aspect: f64) -> Self {
         let centre = DVec2::new(
             2.0 * comparison.centre.x - 1.0,
             1.0 - 2.0 * comparison.centre.y,
@@ -117,11 +117,19 @@ impl Part {
                 ..Self::WHOLE
             };
         }
+        // The square about it, which rasterisers can keep to.
+        let [left, bottom] = [centre.x - radius / aspect, centre.y - radius];
+        let [right, top] = [centre.x + radius / aspect, centre.y + radius];
         Self {
             scale: DVec2::splat(comparison.magnify),
             shift: centre * (1.0 - comparison.magnify),
+            lines: [
+                DVec3::new(1.0, 0.0, -left),
+                DVec3::new(-1.0, 0.0, right),
+                DVec3::new(0.0, 1.0, -bottom),
+                DVec3::new(0.0, -1.0, top),
+            ],
             circle: circle(1.0),
-            ..Self::WHOLE
         }
     }
 }
@@ -166,7 +174,7 @@ impl Exhibit {
         let part = |k: usize| match comparison.mode {
             CompareMode::Curtain => Part::band(k, count, comparison.at, angle, aspect),
             CompareMode::SideBySide => Part::cell(k, count),
-            CompareMode::Loupe => Part::loupe(k > 0, comparison),
+            CompareMode::Loupe => Part::loupe(k > 0, comparison, aspect),
             CompareMode::Blend | CompareMode::Difference | CompareMode::Flicker => Part::WHOLE,
         };
         let shown = if comparison.mode.divides() { count } else { 1 };
@@ -262,7 +270,7 @@ mod tests {
             magnify: 3.0,
             ..Comparison::new(CompareMode::Loupe, Vec::new())
         };
-        let loupe = [false, true].map(|inside| Part::loupe(inside, &comparison));
+        let loupe = [false, true].map(|inside| Part::loupe(inside, &comparison, 1.6));
         divide(&loupe, 1.6);
         // The place under the middle of the loupe stays there.
         let own = DVec2::new(-0.4, -0.2);

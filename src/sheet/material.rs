@@ -27,6 +27,9 @@ use crate::{manifest::exhibit::MAX_OVERLAYS, needs::Terms, optics::tier::Tier};
 
 /// The name of the number of sorts of particles in the shader.
 pub const SORTS: &str = "SORTS";
+/// The name in the vertex shader, and in it alone, that has the rasteriser spare what other members of
+/// a comparison show.
+const CLIPS: &str = "CLIPS";
 /// Binding of the profiles of IES lamps.
 const PROFILE_BINDING: u32 = 11;
 /// Binding of the media of the other side.
@@ -70,6 +73,8 @@ pub struct PaperMaterial {
     /// Drawn into a window: at the display's level, and with half an 8-bit step of noise
     /// against banding. Files stay exact.
     pub display: bool,
+    /// The device can clip by lines: without, it shades what other members show and drops it.
+    pub clips: bool,
 }
 
 /// What the pipeline is specialised for.
@@ -78,6 +83,7 @@ pub struct PaperKey {
     terms: Terms,
     albedo_map: bool,
     display: bool,
+    clips: bool,
 }
 
 impl PaperMaterial {
@@ -117,6 +123,7 @@ impl AsBindGroup for PaperMaterial {
             terms: self.terms,
             albedo_map: self.maps.albedo.is_some(),
             display: self.display,
+            clips: self.clips,
         }
     }
 
@@ -232,6 +239,7 @@ impl Material for PaperMaterial {
             terms,
             albedo_map,
             display,
+            clips,
         } = key.bind_group_data;
         let defs: Vec<ShaderDefVal> = definitions(&terms, albedo_map, display)
             .into_iter()
@@ -248,6 +256,9 @@ impl Material for PaperMaterial {
         }
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
         descriptor.vertex.shader_defs.extend(defs.iter().cloned());
+        if terms.cut && clips {
+            descriptor.vertex.shader_defs.push(CLIPS.into());
+        }
         if let Some(fragment) = &mut descriptor.fragment {
             fragment.shader_defs.extend(defs);
         }

@@ -2,7 +2,12 @@
 
 use std::{f64::consts::FRAC_PI_8, sync::Arc};
 
-use bevy::{camera::visibility::NoFrustumCulling, ecs::system::SystemParam, prelude::*};
+use bevy::{
+    camera::visibility::NoFrustumCulling,
+    ecs::system::SystemParam,
+    prelude::*,
+    render::{render_resource::WgpuFeatures, renderer::RenderDevice},
+};
 use glam::{DMat4, DQuat, DVec3};
 
 use super::{
@@ -86,6 +91,7 @@ impl Arranged {
 #[derive(SystemParam)]
 pub struct Supplies<'w> {
     library: ResMut<'w, Library>,
+    device: Option<Res<'w, RenderDevice>>,
     waker: Option<Res<'w, Waker>>,
     meshes: ResMut<'w, Assets<Mesh>>,
     materials: ResMut<'w, Assets<PaperMaterial>>,
@@ -102,6 +108,7 @@ pub fn arrange(
 ) {
     let Supplies {
         mut library,
+        device,
         waker,
         mut meshes,
         mut materials,
@@ -110,6 +117,8 @@ pub fn arrange(
     if arranged.settled && !shown.is_changed() {
         return;
     }
+    let clips =
+        device.is_some_and(|device| device.features().contains(WgpuFeatures::CLIP_DISTANCES));
     let members = shown.members();
     let wanted: Vec<(Needs, Request)> = members
         .iter()
@@ -171,6 +180,7 @@ pub fn arrange(
                     terms: side.terms,
                     maps,
                     display: arranged.display,
+                    clips,
                 });
                 let mesh = meshes.add(side_surface(&surface, drawing, side.side).mesh());
                 let entity = commands
