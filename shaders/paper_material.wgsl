@@ -22,6 +22,9 @@ enable clip_distances;
     passing, shares_of, sheen_albedo, turned, uncovered_share, under_sheen, veiled, with_borne,
 }
 
+#ifdef DISPLAY
+#import "embedded://recto/display.wgsl"::{dithered}
+#endif
 #ifdef RELIEF_SHADOWS
 #import "embedded://recto/paper_bsdf.wgsl"::{
     Horizon, MARCH_START, MARCH_STEPS, horizon_with, march_growth, march_reach, rise_of, visible_over,
@@ -317,15 +320,6 @@ fn lay(
     } else {
         *sign_colour = *sign_colour * (1.0 - laid.a) + laid;
     }
-}
-#endif
-
-#ifdef DISPLAY
-// Interleaved gradient noise (Jimenez 2014) over one 8-bit step of the display's encoding.
-fn dithered(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
-    let noise = fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))) - 0.5;
-    let step = max(2.2 * sqrt(max(colour, vec3(0.0))), vec3(1.0 / 12.92)) / 255.0;
-    return max(colour + noise * step, vec3(0.0));
 }
 #endif
 

@@ -225,6 +225,8 @@ pub struct SideNeeds {
     pub media: SideMedia,
     /// What lies on the other side, where light comes through.
     pub other_media: SideMedia,
+    /// How many times steeper the relief is shown.
+    pub exaggerate: f64,
 }
 
 /// What a scene requires.
@@ -314,8 +316,12 @@ fn side_needs(
     match &side {
         None => say("no maps, it is bare paper".into()),
         Some(side) => {
-            say(format!("albedo from {}", side.albedo.file.path.display()));
-            maps.push(MapUse::Albedo(side.albedo.clone()));
+            if scene.enhance.relief_only {
+                say("no albedo and no media: relief only".into());
+            } else {
+                say(format!("albedo from {}", side.albedo.file.path.display()));
+                maps.push(MapUse::Albedo(side.albedo.clone()));
+            }
             relief(side, directional, &mut terms, &mut maps, &mut say);
             relief_shadows(side, &shown, &mut terms, &mut maps, &mut say);
             if let Some(roughness) = &side.roughness {
@@ -329,8 +335,10 @@ fn side_needs(
                     say("no roughness map: nothing is specular".into());
                 }
             }
-            let paper = &drawing.paper;
-            media = matter::matter(exhibit, side, paper, &mut terms, &mut maps, &mut say);
+            if !scene.enhance.relief_only {
+                let paper = &drawing.paper;
+                media = matter::matter(exhibit, side, paper, &mut terms, &mut maps, &mut say);
+            }
         }
     }
     if let Some(outline) = &drawing.outline {
@@ -386,6 +394,7 @@ fn side_needs(
         maps,
         media,
         other_media,
+        exaggerate: scene.enhance.exaggerate,
     }
 }
 
@@ -412,7 +421,9 @@ fn transmission(
         terms.transmission_map = true;
         maps.push(MapUse::Transmission(map));
     }
-    if let Some(other) = drawing.side_in_state(name.other(), scene.state) {
+    if !scene.enhance.relief_only
+        && let Some(other) = drawing.side_in_state(name.other(), scene.state)
+    {
         let mut albedo = other.albedo.clone();
         // Turning the sheet over twice leads back: either way is the same.
         albedo.file.uv_from_side *= drawing.recto_from(SideName::Verso);

@@ -34,7 +34,8 @@ use crate::{
     stage::{
         Arranged, Library, Shown, StagePlugin,
         camera::{camera_bundle, without_clusters},
-        legend::{DIFFERENCE_COLOURS, TextCamera},
+        composite::{PictureCamera, PictureSize},
+        legend::TextCamera,
     },
 };
 
@@ -133,7 +134,9 @@ impl Darkroom {
             add_target(world, size, PICTURE),
             add_target(world, size, TEXT),
         );
-        let camera = world.spawn((camera_bundle(), target_of(&target))).id();
+        world.insert_resource(PictureSize(size));
+        let camera = (PictureCamera, camera_bundle(0), target_of(&target));
+        let camera = world.spawn(camera).id();
         let text_camera = world
             .spawn((
                 Camera2d,
@@ -216,28 +219,12 @@ impl Darkroom {
         self.frame()
     }
 
-    /// One picture of `shown`, with a legend if overlays lie on it or colours stand for differences.
+    /// One picture of `shown`, with a legend if overlays lie on it, colours stand for
+    /// differences, or it is enhanced.
     ///
     /// # Errors
     /// As [`Darkroom::arrange`].
     pub fn take(&mut self, shown: Shown, size: [u32; 2]) -> Result<Picture, ShotError> {
-        let Some(comparison) = shown.scene.compare.clone() else {
-            return self.expose_whole(shown, size);
-        };
-        let second = match comparison.mode {
-            CompareMode::Blend | CompareMode::Difference => shown.alone(1),
-            _ => None,
-        };
-        let level = shown.scene.exposure.level;
-        let first = self.expose_whole(shown, size)?;
-        let Some(second) = second else {
-            return Ok(first);
-        };
-        let second = self.expose_whole(second, size)?;
-        Ok(combined(&comparison, first, &second, level))
-    }
-
-    fn expose_whole(&mut self, shown: Shown, size: [u32; 2]) -> Result<Picture, ShotError> {
         let has_legend = has_legend(&shown.scene);
         self.arrange(shown, size)?;
         let wanted = [Some(&self.target), has_legend.then_some(&self.text_target)];
@@ -286,6 +273,7 @@ impl Darkroom {
         }
         self.size = size;
         let world = self.apps.main.world_mut();
+        world.insert_resource(PictureSize(size));
         self.target = add_target(world, size, PICTURE);
         self.text_target = add_target(world, size, TEXT);
         world
@@ -362,29 +350,9 @@ impl Darkroom {
 
 fn has_legend(scene: &Scene) -> bool {
     let is_coded = |comparison: &Comparison| comparison.mode == CompareMode::Difference;
-    scene.overlays.iter().any(|(_, opacity)| *opacity > 0.0)
+    !scene.enhance.marks().is_empty()
+        || scene.overlays.iter().any(|(_, opacity)| *opacity > 0.0)
         || scene.compare.as_ref().is_some_and(is_coded)
-}
-
-/// Two members of a comparison in one picture, shown at the linear display `level`: mixed as light,
-/// or the ΔE00 of what a display shows of them as a colour of [`DIFFERENCE_COLOURS`].
-fn combined(comparison: &Comparison, mut first: Picture, second: &Picture, level: f64) -> Picture {
-    let shown = |light: &[f32; 3]| light.map(|v| (f64::from(v) * level).clamp(0.0, 1.0));
-    let pixel = |(a, b): (&mut [f32; 3], &[f32; 3])| {
-        if comparison.mode == CompareMode::Difference {
-            let [lab_a, lab_b] = [&*a, b].map(|light| colour::lab_from_linear(shown(light)));
-            let share = colour::delta_e00(lab_a, lab_b) / comparison.full_delta_e;
-            let coded = DIFFERENCE_COLOURS.colour(share.min(1.0));
-            *a = coded.map(|v| (v / level) as f32);
-        } else {
-            let at = comparison.at as f32;
-            for (a, b) in a.iter_mut().zip(b) {
-                *a = *a * (1.0 - at) + b * at;
-            }
-        }
-    };
-    first.pixels.iter_mut().zip(&second.pixels).for_each(pixel);
-    first
 }
 
 /// Where the device leaves a captured picture.

@@ -35,10 +35,14 @@ pub struct SceneArguments {
     #[arg(long, value_name = "SPEC")]
     camera: Option<String>,
     /// Members against each other, in the light and the camera of the scene: curtain, side-by-side,
-    /// loupe, blend or difference, a colon, and what is compared, such as
+    /// loupe, blend, difference, flicker or glass, a colon, and what is compared, such as
     /// curtain:state:before,state:after,at=0.4; further keys as in a manifest
     #[arg(long, value_name = "MODE:A,B")]
     compare: Option<String>,
+    /// Shows the sheet other than it is, and says so on the picture: relief_only=true, exaggerate=3,
+    /// stretch=[0.2,0.8], sharpen=0.5
+    #[arg(long, value_name = "SPEC")]
+    enhance: Option<String>,
     /// The language of the legend, by its BCP 47 tag
     #[arg(long, value_name = "TAG")]
     language: Option<String>,
@@ -55,6 +59,7 @@ impl SceneArguments {
             lamps: self.lamp,
             camera: self.camera,
             compare: self.compare,
+            enhance: self.enhance,
             language: self.language,
         }
     }

@@ -5,9 +5,12 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::{
-    exhibit::{Camera, CompareMode, Comparison, Drawing, Exhibit, Member, Scene, SideName},
+    exhibit::{
+        Camera, CompareMode, Comparison, Drawing, Exhibit, FlipAxis, Member, Scene, SideName,
+    },
     frames,
 };
+use crate::units::Degrees;
 
 /// Of a picture, what one member of a comparison has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +35,17 @@ impl Part {
         shift: DVec2::ZERO,
         lines: [NO_LINE; 4],
         circle: DVec4::ZERO,
+    };
+
+    /// Nothing of the picture.
+    const NOTHING: Self = Self {
+        lines: [DVec3::NEG_Z; 4],
+        ..Self::WHOLE
+    };
+    /// All of it, by the means of a part: those who take turns are drawn by one pipeline.
+    const ALL: Self = Self {
+        circle: DVec4::new(0.0, 0.0, 1e3, 1.0),
+        ..Self::WHOLE
     };
 
     /// Whether anything of the picture is another member's.
@@ -135,9 +149,9 @@ impl Part {
 }
 
 impl CompareMode {
-    /// Whether each pixel belongs to one member; otherwise all of them make it.
-    pub fn divides(self) -> bool {
-        matches!(self, Self::Curtain | Self::SideBySide | Self::Loupe)
+    /// Whether each pixel is made of both members; otherwise it belongs to one.
+    pub fn combines(self) -> bool {
+        matches!(self, Self::Blend | Self::Difference | Self::Glass)
     }
 
     /// How many members it shows, at least and at most.
@@ -145,7 +159,7 @@ impl CompareMode {
         match self {
             Self::Curtain | Self::Flicker => [2, 8],
             Self::SideBySide => [2, 4],
-            Self::Blend | Self::Loupe | Self::Difference => [2, 2],
+            Self::Blend | Self::Loupe | Self::Difference | Self::Glass => [2, 2],
         }
     }
 
@@ -162,8 +176,7 @@ impl CompareMode {
 
 impl Exhibit {
     /// What a picture of `aspect` (width over height) of `scene` is made of: scenes without
-    /// comparisons, each with its part. Of members that do not divide the picture among them, the
-    /// first has it.
+    /// comparisons, each with its part. Members that are combined have all of it.
     pub fn parts(&self, scene: &Scene, aspect: f64) -> Vec<(Scene, Part)> {
         let Some(comparison) = &scene.compare else {
             return vec![(scene.clone(), Part::WHOLE)];
@@ -175,10 +188,11 @@ impl Exhibit {
             CompareMode::Curtain => Part::band(k, count, comparison.at, angle, aspect),
             CompareMode::SideBySide => Part::cell(k, count),
             CompareMode::Loupe => Part::loupe(k > 0, comparison, aspect),
-            CompareMode::Blend | CompareMode::Difference | CompareMode::Flicker => Part::WHOLE,
+            CompareMode::Flicker if k == comparison.turn % count => Part::ALL,
+            CompareMode::Flicker => Part::NOTHING,
+            CompareMode::Blend | CompareMode::Difference | CompareMode::Glass => Part::WHOLE,
         };
-        let shown = if comparison.mode.divides() { count } else { 1 };
-        let members = members.into_iter().take(shown).enumerate();
+        let members = members.into_iter().enumerate();
         members.map(|(k, member)| (member, part(k))).collect()
     }
 
@@ -188,8 +202,34 @@ impl Exhibit {
         let Some(comparison) = &scene.compare else {
             return Vec::new();
         };
-        let members = comparison.of.iter();
-        members.map(|member| self.member(scene, *member)).collect()
+        let members = comparison.of.iter().enumerate();
+        let member = |(k, member): (usize, &Member)| {
+            let mut shown = self.member(scene, *member);
+            if comparison.mode == CompareMode::Glass && k > 0 {
+                shown.camera.turn =
+                    turn_from_behind(scene.camera.turn, &self.drawings[scene.drawing]);
+            }
+            shown
+        };
+        members.map(member).collect()
+    }
+
+    /// The members that a scene without a comparison has to show against each other: its drawing's
+    /// first two states, or its sides; none where there is nothing to compare.
+    pub fn comparable(&self, scene: &Scene) -> Vec<Member> {
+        let drawing = &self.drawings[scene.drawing];
+        if drawing.states.len() >= 2 {
+            return vec![Member::State(0), Member::State(1)];
+        }
+        self.both_sides(scene)
+    }
+
+    /// The sides of a scene's drawing, that in view first; none where only one has maps.
+    pub fn both_sides(&self, scene: &Scene) -> Vec<Member> {
+        match self.drawings[scene.drawing].verso {
+            Some(_) => vec![Member::Side(scene.side), Member::Side(scene.side.other())],
+            None => Vec::new(),
+        }
     }
 
     fn member(&self, scene: &Scene, member: Member) -> Scene {
@@ -222,6 +262,14 @@ impl Exhibit {
             }
         }
         shown
+    }
+}
+
+/// How the eye walks around a sheet whose picture, mirrored sideways, is that seen through glass.
+fn turn_from_behind(turn: Degrees, drawing: &Drawing) -> Degrees {
+    match drawing.flip {
+        FlipAxis::Vertical => Degrees(-turn.0),
+        FlipAxis::Horizontal => Degrees(180.0 - turn.0),
     }
 }
 

@@ -421,8 +421,62 @@ pub struct Scene {
     pub lamps: Vec<usize>,
     pub ambient: Ambient,
     pub exposure: Exposure,
+    pub enhance: Enhancement,
     /// The language of the captions; `None` is the exhibit's first.
     pub language: Option<String>,
+}
+
+/// What is shown other than it is, for the eye alone: said on every picture while on, and never part
+/// of a measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enhancement {
+    /// All paper has the colour of bare paper, and nothing is drawn on it.
+    pub relief_only: bool,
+    /// How many times steeper the relief is.
+    pub exaggerate: f64,
+    /// Linear display levels that are shown as black and as white.
+    pub stretch: Option<DVec2>,
+    /// Of contrast-adaptive sharpening, 0…1.
+    pub sharpen: f64,
+}
+
+impl Default for Enhancement {
+    fn default() -> Self {
+        Self {
+            relief_only: false,
+            exaggerate: 1.0,
+            stretch: None,
+            sharpen: 0.0,
+        }
+    }
+}
+
+impl Enhancement {
+    /// Whether finished pictures are changed, and not only the sheet.
+    pub fn is_of_picture(&self) -> bool {
+        self.stretch.is_some() || self.sharpen > 0.0
+    }
+
+    /// What a picture says of it, a line each; nothing where nothing is enhanced.
+    pub fn marks(&self) -> Vec<String> {
+        let mut marks = Vec::new();
+        if self.relief_only {
+            marks.push("relief only, without colour".to_owned());
+        }
+        if self.exaggerate != 1.0 {
+            marks.push(format!("relief {:.1} times as steep", self.exaggerate));
+        }
+        if let Some(stretch) = self.stretch {
+            let [low, high] = (stretch * 100.0).to_array();
+            marks.push(format!(
+                "contrast stretched: {low:.0} to {high:.0} % of white"
+            ));
+        }
+        if self.sharpen > 0.0 {
+            marks.push(format!("sharpened: {:.0} %", self.sharpen * 100.0));
+        }
+        marks
+    }
 }
 
 /// Albedo of bare paper, linear sRGB, where neither manifest nor picture says one: the measured
@@ -453,6 +507,12 @@ pub struct Comparison {
     pub magnify: f64,
     /// ΔE00 at which a difference is shown at the top of its scale.
     pub full_delta_e: f64,
+    /// The same of luminance, as a share of a perfect diffuser's: the difference is one of light then.
+    pub full_luminance: Option<f64>,
+    /// Whether a difference is shown in colours; otherwise its numbers stand for light.
+    pub coded: bool,
+    /// Of members that take turns, whose it is.
+    pub turn: usize,
 }
 
 impl Comparison {
@@ -467,6 +527,9 @@ impl Comparison {
             radius: 0.25,
             magnify: 2.0,
             full_delta_e: 10.0,
+            full_luminance: None,
+            coded: true,
+            turn: 0,
         }
     }
 }
@@ -480,6 +543,8 @@ pub enum CompareMode {
     Loupe,
     Difference,
     Flicker,
+    /// Both as if the sheet were glass: the second is seen from behind.
+    Glass,
 }
 
 /// One member of a comparison, written `state:before`, `side:verso`, `overlay:damage`,

@@ -9,9 +9,12 @@ use toml::{Table, Value};
 
 use super::{
     Fault, Faults, Pattern, did_you_mean,
-    exhibit::{Camera, Drawing, Exhibit, Lamp, MAX_LAMPS, MAX_OVERLAYS, Member, Scene, SideName},
+    exhibit::{
+        Camera, Drawing, Enhancement, Exhibit, Lamp, MAX_LAMPS, MAX_OVERLAYS, Member, Scene,
+        SideName,
+    },
     frames, one, quote, quoted_list,
-    raw::{RawCamera, RawCompare, RawShownOverlay},
+    raw::{RawCamera, RawCompare, RawEnhance, RawShownOverlay},
 };
 use crate::units::Degrees;
 use spec::{decode, fault, parts, table, validated, value};
@@ -44,6 +47,8 @@ pub struct Overrides {
     pub camera: Option<String>,
     /// `MODE:A,B`, what follows as in a manifest: `curtain:state:before,state:after,at=0.4`.
     pub compare: Option<String>,
+    /// `key=value,…` as in a manifest; takes the place of the scene's own.
+    pub enhance: Option<String>,
     /// A BCP 47 tag.
     pub language: Option<String>,
 }
@@ -70,6 +75,10 @@ impl Overrides {
                 faults.extend(found);
             }
             self.choose_overlays(&mut scene, drawing, &mut faults);
+            match self.enhancement(&scene) {
+                Ok(enhance) => scene.enhance = enhance,
+                Err(found) => faults.extend(found),
+            }
             if let Err(found) = self.choose_comparison(&mut scene, &exhibit, &mut faults) {
                 faults.extend(found);
             }
@@ -239,6 +248,20 @@ impl Overrides {
         }
         scene.compare = Some(raw.comparison(of));
         Ok(())
+    }
+
+    fn enhancement(&self, scene: &Scene) -> Result<Enhancement, Vec<Fault>> {
+        const OPTION: &str = "--enhance";
+        let Some(spec) = &self.enhance else {
+            return Ok(scene.enhance);
+        };
+        let raw: RawEnhance = decode(OPTION, table(OPTION, parts(spec))?.into())?;
+        if !raw.is_stretch_sound() {
+            let remedy = "write it like stretch=[0.2,0.8]";
+            let allowed = "the lower end first, .01 apart at least";
+            return Err(vec![fault(OPTION, quote(spec), allowed, remedy)]);
+        }
+        Ok(raw.enhancement())
     }
 
     fn language(&self, exhibit: &Exhibit) -> Result<Option<String>, Vec<Fault>> {

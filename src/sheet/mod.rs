@@ -17,6 +17,11 @@ pub const PAPER_BSDF: &str = include_str!("../../shaders/paper_bsdf.wgsl");
 /// The glue around it.
 pub const PAPER_MATERIAL: &str = include_str!("../../shaders/paper_material.wgsl");
 
+/// What a display needs beyond light.
+pub const DISPLAY: &str = include_str!("../../shaders/display.wgsl");
+/// One picture of several.
+pub const COMPOSITE: &str = include_str!("../../shaders/composite.wgsl");
+
 /// The baselines, which are read behind the physics.
 pub const PAPER_BASELINES: &str = include_str!("../../shaders/paper_baselines.wgsl");
 /// The same as a module of its own: plain WGSL has no imports.
@@ -48,6 +53,8 @@ impl Plugin for SheetPlugin {
             ("recto/paper_baselines.wgsl", PAPER_BASELINES_MODULE),
             ("recto/paper_media.wgsl", PAPER_MEDIA_MODULE),
             ("recto/paper_material.wgsl", PAPER_MATERIAL),
+            ("recto/display.wgsl", DISPLAY),
+            ("recto/composite.wgsl", COMPOSITE),
         ] {
             registry.insert_asset(path.into(), Path::new(path), text.as_bytes());
         }

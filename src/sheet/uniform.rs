@@ -360,6 +360,14 @@ impl PaperUniform {
         self.height_texel = (map.file.extent_mm() / size).max_element() as f32;
     }
 
+    /// Makes the relief of the maps that are set steeper by `times`: for the eye alone, what is
+    /// widened by it stays.
+    pub fn exaggerate(&mut self, times: f64) {
+        self.normal_axes *= times as f32;
+        self.normal_offset *= times as f32;
+        self.height_range *= times as f32;
+    }
+
     /// Sets eye and projection, given in the table frame, for a side whose local frame is
     /// `table_from_local`.
     pub fn set_eye(&mut self, clip_from_table: DMat4, eye: DVec4, table_from_local: DMat4) {

@@ -15,10 +15,12 @@ pub fn without_clusters(mut settings: ResMut<GlobalClusterSettings>) {
 
 /// The camera that draws the sheet. Its projection is not used: the sheet's shader has the
 /// eye's own, in f64 until it is narrowed.
-pub fn camera_bundle() -> impl Bundle {
+/// `order` is that among several cameras, the lowest first.
+pub fn camera_bundle(order: isize) -> impl Bundle {
     (
         Camera3d::default(),
         Camera {
+            order,
             clear_color: ClearColorConfig::Custom(Color::linear_rgb(TABLE, TABLE, TABLE)),
             ..default()
         },

@@ -101,7 +101,8 @@ fn draw(
         .compare
         .as_ref()
         .filter(|comparison| comparison.mode == CompareMode::Difference);
-    if overlays.is_empty() && difference.is_none() {
+    let marks = shown.scene.enhance.marks();
+    if overlays.is_empty() && difference.is_none() && marks.is_empty() {
         return;
     }
     let size = text_size(text.height);
@@ -126,8 +127,14 @@ fn draw(
             BackgroundColor(Color::srgba(0.05, 0.05, 0.05, 0.85)),
         ))
         .with_children(|rows| {
+            for mark in marks {
+                rows.spawn(words.line(mark));
+            }
             if let Some(comparison) = difference {
-                let top = format!("{} ΔE00", comparison.full_delta_e);
+                let top = match comparison.full_luminance {
+                    Some(full) => format!("{full} of white's luminance"),
+                    None => format!("{} ΔE00", comparison.full_delta_e),
+                };
                 words.scale(rows, DIFFERENCE_COLOURS, "0".to_owned(), top);
             }
             for (overlay, opacity) in overlays {
@@ -220,7 +227,8 @@ impl Words<'_> {
         let [r, g, b] = map.colour(at).map(|c| colour::srgb_encode(c) as f32);
         (
             Node {
-                width: Val::Px(self.size * 0.25),
+                // Whole pixels: seams would show between others.
+                width: Val::Px((self.size * 0.25).max(1.0).round()),
                 height: Val::Px(self.size),
                 ..default()
             },

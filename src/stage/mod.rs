@@ -2,6 +2,7 @@
 //! sides, and keeps their lamps, eye and overlays true to [`Shown`].
 
 pub mod camera;
+pub mod composite;
 pub mod legend;
 pub mod library;
 pub mod reload;
@@ -16,10 +17,12 @@ pub use crate::manifest::lighting::TABLE;
 pub use library::{Library, Waker};
 pub use sides::Arranged;
 
+use composite::{Composite, CompositeMaterial};
+
 use crate::{
     manifest::{
         comparison::Part,
-        exhibit::{Exhibit, Scene, Wording},
+        exhibit::{CompareMode, Comparison, Exhibit, Scene, Wording},
         eye::Eye,
     },
     optics::tier::Tier,
@@ -65,25 +68,36 @@ impl Shown {
     /// compares several.
     pub fn members(&self) -> Vec<Shared> {
         let parts = self.exhibit.parts(&self.scene, self.aspect).into_iter();
-        let shared = parts.map(|(scene, part)| Shared {
-            pose: self.pose_of(&scene),
+        let shared = parts.enumerate().map(|(k, (scene, part))| Shared {
+            pose: self.pose_of(&scene, self.is_behind(k)),
             scene,
             part,
         });
         shared.collect()
     }
 
-    /// How the sheet of another scene lies when it is turned as this one is.
-    fn pose_of(&self, scene: &Scene) -> DQuat {
+    /// How the sheet of another scene lies when it is turned as this one is, or, `behind` glass, so
+    /// that its mirror image is.
+    fn pose_of(&self, scene: &Scene, behind: bool) -> DQuat {
         let rest = |scene: &Scene| self.exhibit.drawing_of(scene).rest_pose(scene.side);
-        self.pose * rest(&self.scene).inverse() * rest(scene)
+        let mut turned = self.pose * rest(&self.scene).inverse();
+        if behind {
+            turned = DQuat::from_xyzw(turned.x, -turned.y, -turned.z, turned.w);
+        }
+        turned * rest(scene)
+    }
+
+    /// Whether member `k` is seen from behind, as through glass.
+    fn is_behind(&self, k: usize) -> bool {
+        let glass = |c: &Comparison| c.mode == CompareMode::Glass;
+        k > 0 && self.scene.compare.as_ref().is_some_and(glass)
     }
 
     /// Member `k` of the comparison that is shown, alone and whole; `None` where there is none.
     pub fn alone(&self, k: usize) -> Option<Self> {
         let scene = self.exhibit.members(&self.scene).into_iter().nth(k)?;
         Some(Self {
-            pose: self.pose_of(&scene),
+            pose: self.pose_of(&scene, self.is_behind(k)),
             scene,
             ..self.clone()
         })
@@ -130,17 +144,27 @@ pub struct StagePlugin {
 
 impl Plugin for StagePlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((SheetPlugin, legend::LegendPlugin))
-            .insert_resource(Library::new(self.anisotropy))
-            .insert_resource(Arranged::new(self.display))
-            .add_systems(Startup, library::suit_device)
-            .configure_sets(Update, (StageSet::Steer, StageSet::Arrange).chain())
-            .add_systems(
-                Update,
-                (library::receive, sides::arrange)
-                    .chain()
-                    .in_set(StageSet::Arrange)
-                    .run_if(resource_exists::<Shown>),
-            );
+        app.add_plugins((
+            SheetPlugin,
+            legend::LegendPlugin,
+            MaterialPlugin::<CompositeMaterial>::default(),
+        ))
+        .init_resource::<Composite>()
+        .insert_resource(Library::new(self.anisotropy))
+        .insert_resource(Arranged::new(self.display))
+        .add_systems(Startup, library::suit_device)
+        .configure_sets(Update, (StageSet::Steer, StageSet::Arrange).chain())
+        .add_systems(
+            Update,
+            (
+                library::receive,
+                sides::arrange,
+                composite::compose,
+                composite::follow,
+            )
+                .chain()
+                .in_set(StageSet::Arrange)
+                .run_if(resource_exists::<Shown>),
+        );
     }
 }

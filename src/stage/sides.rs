@@ -12,6 +12,7 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::{
     Library, Shared, Shown, TABLE, Waker,
+    composite::{is_composite, layer_of},
     library::{Facts, Held, Request, is_lit},
 };
 use crate::{
@@ -47,6 +48,8 @@ pub struct Arranged {
     display: bool,
     /// Of each member of what is shown.
     needs: Option<Vec<(Needs, Request)>>,
+    /// Whether they are drawn for a last pass.
+    composite: bool,
     drawings: Vec<usize>,
     sides: Vec<ArrangedSide>,
     /// The photometric files of the IES lamps, and their texture.
@@ -68,6 +71,7 @@ impl Arranged {
         Self {
             display,
             needs: None,
+            composite: false,
             drawings: Vec::new(),
             sides: Vec::new(),
             profiles: (Vec::new(), None),
@@ -78,6 +82,11 @@ impl Arranged {
     /// Whether the stage shows what [`Shown`] says, with all its maps.
     pub fn is_settled(&self) -> bool {
         self.settled
+    }
+
+    /// Whether pictures are drawn into a window.
+    pub fn is_display(&self) -> bool {
+        self.display
     }
 
     /// Asks for everything to be arranged anew: the exhibit was read again.
@@ -124,7 +133,8 @@ pub fn arrange(
         .iter()
         .map(|member| wanted(&shown, member))
         .collect();
-    if arranged.needs.as_ref() != Some(&wanted) {
+    let composite = is_composite(&shown.scene);
+    if arranged.needs.as_ref() != Some(&wanted) || arranged.composite != composite {
         arranged.settled = false;
         let requests: Vec<Request> = wanted
             .iter()
@@ -179,7 +189,7 @@ pub fn arrange(
                     paper,
                     terms: side.terms,
                     maps,
-                    display: arranged.display,
+                    display: arranged.display && !composite,
                     clips,
                 });
                 let mesh = meshes.add(side_surface(&surface, drawing, side.side).mesh());
@@ -188,6 +198,7 @@ pub fn arrange(
                         Mesh3d(mesh),
                         MeshMaterial3d(material.clone()),
                         NoFrustumCulling,
+                        layer_of(k, composite),
                     ))
                     .id();
                 let (name, needs) = (side.side, side.clone());
@@ -201,6 +212,7 @@ pub fn arrange(
             }
         }
         arranged.needs = Some(wanted);
+        arranged.composite = composite;
         arranged.drawings = members.iter().map(|member| member.scene.drawing).collect();
     }
     let lighting = shown.exhibit.lighting(&shown.scene);
@@ -360,6 +372,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUnif
             }
         }
     }
+    uniform.exaggerate(side.exaggerate);
     (uniform, rows)
 }
 

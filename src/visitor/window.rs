@@ -40,6 +40,7 @@ use crate::{
     stage::{
         Arranged, Library, Shown, StagePlugin, StageSet, Waker,
         camera::{camera_bundle, without_clusters},
+        composite::{PictureCamera, PictureSize},
         legend::TextCamera,
         reload::{ReloadPlugin, Reread},
         say,
@@ -105,6 +106,7 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         .init_resource::<Texts>()
         .init_resource::<Pace>()
         .init_resource::<Foresight>()
+        .insert_resource(PictureSize(UVec2::ONE))
         .add_message::<Intent>()
         .add_plugins((
             StagePlugin {
@@ -196,7 +198,7 @@ fn suit_device(adapter: Res<RenderAdapterInfo>, mut library: ResMut<Library>) {
 }
 
 fn set_up(mut commands: Commands) {
-    commands.spawn((camera_bundle(), TextCamera { height: 1.0 }));
+    commands.spawn((PictureCamera, camera_bundle(0), TextCamera { height: 1.0 }));
 }
 
 /// A display that is switched off would take its windows with it.
@@ -238,6 +240,7 @@ fn measure(
     mut hand: ResMut<Hand>,
     mut devices: ResMut<Devices>,
     mut texts: Query<&mut TextCamera>,
+    mut picture_size: ResMut<PictureSize>,
 ) {
     let Ok((window, monitor)) = windows.single() else {
         return;
@@ -247,6 +250,7 @@ fn measure(
         return;
     }
     devices.resize(size);
+    picture_size.0 = window.physical_size();
     for mut text in &mut texts {
         if text.height != size.y {
             text.height = size.y;

@@ -207,3 +207,17 @@ pub trait Decode: Sized + JsonSchema {
     /// `None` if the value is at fault, which is then in `report`.
     fn decode(node: &Node<'_>, report: &mut Report<'_>) -> Option<Self>;
 }
+
+impl Decode for bool {
+    fn allowed() -> String {
+        "true or false".to_owned()
+    }
+
+    fn decode(node: &Node<'_>, report: &mut Report<'_>) -> Option<Self> {
+        let DeValue::Boolean(value) = node.value.get_ref() else {
+            report.refuse::<Self>(node, "write one of these words without quotes");
+            return None;
+        };
+        Some(*value)
+    }
+}

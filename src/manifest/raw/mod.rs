@@ -21,7 +21,8 @@ use crate::{
 pub use lamp::RawLamp;
 pub use medium::{RawAlbedo, RawMedium};
 pub use scene::{
-    RawAmbient, RawCamera, RawCompare, RawExposure, RawScene, RawShownOverlay, RawStop, RawTour,
+    RawAmbient, RawCamera, RawCompare, RawEnhance, RawExposure, RawScene, RawShownOverlay, RawStop,
+    RawTour,
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;

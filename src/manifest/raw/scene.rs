@@ -3,13 +3,15 @@
 use super::{
     super::{
         decode::{Brief, List},
-        exhibit::{CompareMode, Comparison, MAX_LAMPS, MAX_OVERLAYS, Member, SideName},
+        exhibit::{
+            CompareMode, Comparison, Enhancement, MAX_LAMPS, MAX_OVERLAYS, Member, SideName,
+        },
         macros::record,
     },
     RawWording,
     values::{
-        DeltaE, DistanceMm, Fraction, Id, LampLux, Language, Level, Magnification, MemberText,
-        PlaceMm, RoomLux, Seconds, Temperature, TiltDeg, TurnDeg, ViewMm,
+        DeltaE, DistanceMm, Exaggeration, Fraction, Id, LampLux, Language, Level, Magnification,
+        MemberText, PlaceMm, RoomLux, Seconds, Temperature, TiltDeg, TurnDeg, ViewMm,
     },
 };
 use crate::units::Degrees;
@@ -47,6 +49,8 @@ record! {
             ambient: RawAmbient,
             /// What a display shows at full level.
             exposure: RawExposure,
+            /// What is shown other than it is, for the eye; every picture says so. Without it: nothing.
+            enhance: RawEnhance,
             /// The language of the texts, by its BCP 47 tag. Without it: the visitor's.
             language: Language,
         }
@@ -94,10 +98,53 @@ record! {
             magnify: Magnification,
             /// The ΔE00 that a difference shows at the top of its scale. Without it: 10.
             full_delta_e: DeltaE,
+            /// Shows the difference of luminance, and at which share of a white sheet's it is at the
+            /// top of its scale. Without it: the difference is in ΔE00.
+            full_luminance: Level,
         }
         rules []
     }
 }
+
+record! {
+    /// What is shown other than it is; every picture says so.
+    pub struct RawEnhance {
+        required {}
+        optional {
+            /// Shows bare paper, without what is drawn on it. Without it: false.
+            relief_only: bool,
+            /// How many times steeper the relief is. Without it: 1.
+            exaggerate: Exaggeration,
+            /// The linear display levels shown as black and as white, each 0 to 1, the lower first.
+            stretch: [Fraction; 2],
+            /// How much the picture is sharpened, 0 to 1. Without it: 0.
+            sharpen: Fraction,
+        }
+        rules []
+    }
+}
+
+impl RawEnhance {
+    /// As it is written.
+    pub fn enhancement(&self) -> Enhancement {
+        let usual = Enhancement::default();
+        Enhancement {
+            relief_only: self.relief_only.unwrap_or(usual.relief_only),
+            exaggerate: self.exaggerate.map_or(usual.exaggerate, |times| times.0),
+            stretch: self.stretch.map(|ends| ends.map(|end| end.0).into()),
+            sharpen: self.sharpen.map_or(usual.sharpen, |share| share.0),
+        }
+    }
+
+    /// Whether black and white of a stretched contrast are two, the lower first.
+    pub fn is_stretch_sound(&self) -> bool {
+        self.stretch
+            .is_none_or(|[low, high]| high.0 - low.0 >= NARROWEST_STRETCH)
+    }
+}
+
+/// A contrast that is stretched further shows nothing but noise.
+const NARROWEST_STRETCH: f64 = 0.01;
 
 impl RawCompare {
     /// As it is written, its members resolved to `of`.
@@ -112,6 +159,7 @@ impl RawCompare {
             radius: share(self.radius, usual.radius),
             magnify: self.magnify.map_or(usual.magnify, |magnify| magnify.0),
             full_delta_e: self.full_delta_e.map_or(usual.full_delta_e, |e| e.0),
+            full_luminance: self.full_luminance.map(|level| level.0),
             ..usual
         }
     }

@@ -85,6 +85,8 @@ number! {
     Seconds = 0.1 ..= 3600.0, "s";
     /// A colour difference ΔE00.
     DeltaE = 0.01 ..= 100.0, "ΔE00";
+    /// How many times steeper a relief is shown.
+    Exaggeration = 1.0 ..= 20.0, "";
     /// A time for one frame.
     FrameMs = 1.0 ..= 1000.0, "ms";
     /// A roughness α of a drawing material.
@@ -169,6 +171,7 @@ choice! {
         Loupe = "loupe",
         Difference = "difference",
         Flicker = "flicker",
+        Glass = "glass",
     }
     ColourEncoding { Embedded = "embedded", Srgb = "srgb", Linear = "linear", }
     Illuminant {

@@ -7,11 +7,13 @@ use super::{
         decode::{Brief, List, Pattern},
         document::{Trail, Words},
         exhibit::{
-            Ambient, Camera, CompareMode, Comparison, Exposure, Member, Scene, SideName, Tour,
+            Ambient, Camera, Comparison, Enhancement, Exposure, Member, Scene, SideName, Tour,
         },
         raw::{
             RawManifest,
-            scene::{RawAmbient, RawCamera, RawCompare, RawExposure, RawScene, RawTour},
+            scene::{
+                RawAmbient, RawCamera, RawCompare, RawEnhance, RawExposure, RawScene, RawTour,
+            },
             values::{Choice, Id},
         },
     },
@@ -191,7 +193,7 @@ impl Validator<'_, '_> {
         };
         let overlays = self.shown_overlays(raw, &trail.key("overlays"), side, facts);
         let compare = match &raw.compare {
-            Some(compare) => self.comparison(compare, &id, &trail.key("compare"), facts, around),
+            Some(compare) => self.comparison(compare, &trail.key("compare"), facts, around),
             None => Some(None),
         };
         let camera = self.camera(raw.camera.as_ref(), &trail.key("camera"), facts.size_mm);
@@ -208,8 +210,24 @@ impl Validator<'_, '_> {
             lamps: lamps?,
             ambient,
             exposure: exposure(raw.exposure.as_ref(), around.exposure),
+            enhance: self.enhance(raw.enhance.as_ref(), &trail.key("enhance")),
             language,
         })
+    }
+
+    fn enhance(&mut self, raw: Option<&RawEnhance>, trail: &Trail) -> Enhancement {
+        let Some(raw) = raw else {
+            return Enhancement::default();
+        };
+        if !raw.is_stretch_sound() {
+            let words = Words::new(
+                "ends of a stretched contrast that are the same or in the wrong order",
+                "the lower first, .01 apart at least",
+                "write it like [0.2, 0.8]",
+            );
+            self.report.fault(&trail.key("stretch"), words);
+        }
+        raw.enhancement()
     }
 
     fn scene_drawing(
@@ -294,7 +312,6 @@ impl Validator<'_, '_> {
     fn comparison(
         &mut self,
         raw: &RawCompare,
-        scene: &str,
         trail: &Trail,
         facts: &DrawingFacts,
         around: &Surroundings<'_>,
@@ -326,13 +343,6 @@ impl Validator<'_, '_> {
             );
             self.report.fault(&trail.key("of"), words);
             return None;
-        }
-        if !mode.divides() {
-            self.not_shown_yet(format!(
-                "Scene \"{scene}\": a window shows the first member of a comparison by {}; \
-                 recto render shows all.",
-                word::<CompareMode>(mode)
-            ));
         }
         complete.then(|| Some(raw.comparison(of)))
     }
@@ -450,14 +460,6 @@ impl Validator<'_, '_> {
     }
 }
 
-/// The word that a manifest writes for a value.
-fn word<T: Choice + PartialEq>(value: T) -> &'static str {
-    T::WORDS
-        .iter()
-        .find(|(_, choice)| *choice == value)
-        .map_or("", |(word, _)| *word)
-}
-
 fn ambient(raw: Option<&RawAmbient>) -> Ambient {
     Ambient {
         illuminance: Lux(raw.map_or(0.0, |ambient| ambient.lux.0)),
@@ -499,6 +501,7 @@ impl RawScene {
             lamps: None,
             ambient: None,
             exposure: None,
+            enhance: None,
             language: None,
         }
     }
@@ -519,6 +522,7 @@ impl RawScene {
             lamps: self.lamps.or(other.lamps),
             ambient: self.ambient.or(other.ambient),
             exposure: self.exposure.or(other.exposure),
+            enhance: self.enhance.or(other.enhance),
             language: self.language.or(other.language),
         }
     }

@@ -1,0 +1,305 @@
+//! One picture of those of two members of a comparison, or of one that is enhanced: each is drawn
+//! into an image of its own, and a last pass puts them together.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    camera::{
+        RenderTarget,
+        visibility::{NoFrustumCulling, RenderLayers},
+    },
+    ecs::system::SystemParam,
+    mesh::MeshVertexBufferLayoutRef,
+    pbr::{MaterialPipeline, MaterialPipelineKey},
+    prelude::*,
+    render::render_resource::{
+        AsBindGroup, Extent3d, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError,
+        TextureDimension, TextureFormat, TextureUsages,
+    },
+    shader::ShaderRef,
+};
+
+use super::{Arranged, Shown, camera::camera_bundle, legend::DIFFERENCE_COLOURS};
+use crate::manifest::exhibit::{CompareMode, Comparison, Scene};
+
+/// The members' pictures: exact enough for differences of a hundredth of a ΔE00.
+const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
+/// Colours of the scale of differences, between which the shader goes straight.
+const SCALE_STEPS: u32 = 1024;
+/// Before the camera of the picture itself, which is 0.
+const FIRST_ORDER: isize = -4;
+
+/// Size of the picture in pixels.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureSize(pub UVec2);
+
+/// The camera whose picture this is.
+#[derive(Component)]
+pub struct PictureCamera;
+
+/// Draws one member's picture.
+#[derive(Component)]
+pub struct MemberCamera;
+
+/// Whether pictures are put together for `scene`: its sheets are drawn as plain light then.
+pub fn is_composite(scene: &Scene) -> bool {
+    let combines = |comparison: &Comparison| comparison.mode.combines();
+    scene.compare.as_ref().is_some_and(combines) || scene.enhance.is_of_picture()
+}
+
+/// The layer that the sheets of member `k` are drawn on.
+pub fn layer_of(k: usize, composite: bool) -> RenderLayers {
+    RenderLayers::layer(if composite { k + 1 } else { 0 })
+}
+
+/// What `shaders/composite.wgsl` makes of the pictures.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct CompositeUniform {
+    pub stretch: Vec2,
+    pub mode: u32,
+    pub at: f32,
+    pub full: f32,
+    pub level: f32,
+    pub mirrored: u32,
+    pub coded: u32,
+    pub sharpen: f32,
+}
+
+impl CompositeUniform {
+    fn of(scene: &Scene) -> Self {
+        let enhance = &scene.enhance;
+        let mut uniform = Self {
+            stretch: enhance.stretch.map_or(Vec2::Y, |stretch| stretch.as_vec2()),
+            full: 1.0,
+            level: scene.exposure.level as f32,
+            coded: 1,
+            sharpen: enhance.sharpen as f32,
+            ..Self::default()
+        };
+        if let Some(comparison) = scene.compare.as_ref().filter(|c| c.mode.combines()) {
+            // The numbers of the modes in the shader.
+            uniform.mode = match (comparison.mode, comparison.full_luminance) {
+                (CompareMode::Difference, None) => 2,
+                (CompareMode::Difference, Some(_)) => 3,
+                _ => 1,
+            };
+            let full = comparison.full_luminance.unwrap_or(comparison.full_delta_e);
+            uniform.full = full as f32;
+            uniform.at = comparison.at as f32;
+            uniform.coded = comparison.coded.into();
+            uniform.mirrored = (comparison.mode == CompareMode::Glass).into();
+        }
+        uniform
+    }
+}
+
+/// The last pass.
+#[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
+#[bind_group_data(CompositeKey)]
+pub struct CompositeMaterial {
+    #[uniform(0)]
+    pub composite: CompositeUniform,
+    #[texture(1, filterable = false)]
+    pub first: Handle<Image>,
+    #[texture(2, filterable = false)]
+    pub second: Handle<Image>,
+    #[texture(3, filterable = false)]
+    pub scale: Handle<Image>,
+    /// As of [`PaperMaterial`](crate::sheet::PaperMaterial).
+    pub display: bool,
+}
+
+/// What its pipeline is specialised for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CompositeKey {
+    display: bool,
+}
+
+impl From<&CompositeMaterial> for CompositeKey {
+    fn from(material: &CompositeMaterial) -> Self {
+        Self {
+            display: material.display,
+        }
+    }
+}
+
+impl Material for CompositeMaterial {
+    fn vertex_shader() -> ShaderRef {
+        "embedded://recto/composite.wgsl".into()
+    }
+
+    fn fragment_shader() -> ShaderRef {
+        "embedded://recto/composite.wgsl".into()
+    }
+
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+
+    fn specialize(
+        _: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        layout: &MeshVertexBufferLayoutRef,
+        key: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        let corners = [Mesh::ATTRIBUTE_POSITION.at_shader_location(0)];
+        descriptor.vertex.buffers = vec![layout.0.get_layout(&corners)?];
+        if let Some(fragment) = &mut descriptor.fragment
+            && key.bind_group_data.display
+        {
+            fragment.shader_defs.push("DISPLAY".into());
+        }
+        descriptor.primitive.cull_mode = None;
+        Ok(())
+    }
+}
+
+/// What is put together, while anything is.
+#[derive(Resource, Default)]
+pub struct Composite {
+    size: UVec2,
+    pictures: Vec<Handle<Image>>,
+    entities: Vec<Entity>,
+    material: Option<Handle<CompositeMaterial>>,
+}
+
+/// What it is made from.
+#[derive(SystemParam)]
+pub struct Workshop<'w> {
+    images: ResMut<'w, Assets<Image>>,
+    meshes: ResMut<'w, Assets<Mesh>>,
+    materials: ResMut<'w, Assets<CompositeMaterial>>,
+}
+
+/// Brings the last pass in line with what stands on the stage.
+pub fn compose(
+    mut commands: Commands,
+    (shown, arranged, size): (Res<Shown>, Res<Arranged>, Option<Res<PictureSize>>),
+    mut composite: ResMut<Composite>,
+    mut workshop: Workshop,
+) {
+    // Until its maps are there, the last picture stays.
+    if !arranged.is_settled() {
+        return;
+    }
+    let count = match &shown.scene.compare {
+        _ if !is_composite(&shown.scene) => 0,
+        Some(comparison) if comparison.mode.combines() => 2,
+        _ => 1,
+    };
+    let size = size.map_or(UVec2::ONE, |size| size.0.max(UVec2::ONE));
+    if composite.pictures.len() != count || (composite.size != size && count > 0) {
+        for entity in composite.entities.drain(..) {
+            commands.entity(entity).despawn();
+        }
+        *composite = Composite {
+            size,
+            ..Composite::default()
+        };
+        if count > 0 {
+            build(
+                &mut commands,
+                &mut composite,
+                &mut workshop,
+                count,
+                arranged.is_display(),
+            );
+        }
+    }
+    let uniform = CompositeUniform::of(&shown.scene);
+    if let Some(handle) = &composite.material
+        && workshop
+            .materials
+            .get(handle)
+            .is_some_and(|material| material.composite != uniform)
+        && let Some(mut material) = workshop.materials.get_mut(handle)
+    {
+        material.composite = uniform;
+    }
+}
+
+fn build(
+    commands: &mut Commands,
+    composite: &mut Composite,
+    workshop: &mut Workshop,
+    count: usize,
+    display: bool,
+) {
+    for k in 0..count {
+        let picture = workshop.images.add(picture(composite.size));
+        let camera = commands.spawn((
+            MemberCamera,
+            camera_bundle(FIRST_ORDER + k as isize),
+            RenderTarget::Image(picture.clone().into()),
+            layer_of(k, true),
+        ));
+        composite.entities.push(camera.id());
+        composite.pictures.push(picture);
+    }
+    let [first, second] = [0, count - 1].map(|k| composite.pictures[k].clone());
+    let material = workshop.materials.add(CompositeMaterial {
+        composite: CompositeUniform::default(),
+        first,
+        second,
+        scale: workshop.images.add(scale()),
+        display,
+    });
+    let whole = commands.spawn((
+        Mesh3d(workshop.meshes.add(Rectangle::new(2.0, 2.0))),
+        MeshMaterial3d(material.clone()),
+        NoFrustumCulling,
+    ));
+    composite.entities.push(whole.id());
+    composite.material = Some(material);
+}
+
+/// The members' cameras draw when the picture's own does.
+pub fn follow(
+    whole: Query<&Camera, (With<PictureCamera>, Without<MemberCamera>)>,
+    mut members: Query<&mut Camera, With<MemberCamera>>,
+) {
+    let active = whole.iter().any(|camera| camera.is_active);
+    for mut camera in &mut members {
+        if camera.is_active != active {
+            camera.is_active = active;
+        }
+    }
+}
+
+fn picture(size: UVec2) -> Image {
+    let mut image = Image::new_uninit(
+        extent(size),
+        TextureDimension::D2,
+        FORMAT,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.texture_descriptor.usage |=
+        TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+    image
+}
+
+fn scale() -> Image {
+    let texels = (0..SCALE_STEPS).flat_map(|i| {
+        let at = f64::from(i) / f64::from(SCALE_STEPS - 1);
+        let [r, g, b] = DIFFERENCE_COLOURS.colour(at).map(|v| v as f32);
+        [r, g, b, 1.0].map(f32::to_le_bytes).into_iter().flatten()
+    });
+    Image::new(
+        extent(UVec2::new(SCALE_STEPS, 1)),
+        TextureDimension::D2,
+        texels.collect(),
+        FORMAT,
+        RenderAssetUsages::RENDER_WORLD,
+    )
+}
+
+fn extent(size: UVec2) -> Extent3d {
+    Extent3d {
+        width: size.x,
+        height: size.y,
+        depth_or_array_layers: 1,
+    }
+}
