@@ -408,8 +408,7 @@ fn transmission(
     maps: &mut Vec<MapUse>,
     say: &mut impl FnMut(String),
 ) -> SideMedia {
-    let behind = |&lamp: &usize| exhibit.lamps[lamp].kind.is_behind();
-    if !scene.lamps.iter().any(behind) {
+    if !scene.is_lit_from_behind(exhibit) {
         return SideMedia::default();
     }
     say("light through the sheet, from the light table".into());

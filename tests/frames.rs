@@ -20,6 +20,9 @@ mod colour;
 mod compare;
 #[path = "frames/crops.rs"]
 mod crops;
+mod enhance;
+#[path = "frames/enhance.rs"]
+mod enhance;
 #[path = "frames/lamps.rs"]
 mod lamps;
 #[path = "frames/layers.rs"]

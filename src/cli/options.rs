@@ -39,6 +39,9 @@ pub struct SceneArguments {
     /// curtain:state:before,state:after,at=0.4; further keys as in a manifest
     #[arg(long, value_name = "MODE:A,B")]
     compare: Option<String>,
+    /// How much of the light comes through the sheet: 1 is a light table alone, 0 the lamps alone
+    #[arg(long, value_name = "SHARE")]
+    transmitted: Option<f64>,
     /// Shows the sheet other than it is, and says so on the picture: relief_only=true, exaggerate=3,
     /// stretch=[0.2,0.8], sharpen=0.5
     #[arg(long, value_name = "SPEC")]
@@ -59,6 +62,7 @@ impl SceneArguments {
             lamps: self.lamp,
             camera: self.camera,
             compare: self.compare,
+            transmitted: self.transmitted,
             enhance: self.enhance,
             language: self.language,
         }

@@ -75,12 +75,8 @@ impl Part {
     /// The curtain's part `k` of `count`: bands across the direction at `angle` (radians,
     /// anticlockwise from the right), the first two of two divided at the share `at` of the way.
     fn band(k: usize, count: usize, at: f64, angle: f64, aspect: f64) -> Self {
-        let across = DVec2::new(aspect * angle.cos(), angle.sin());
-        let reach = across.x.abs() + across.y.abs();
-        let edge = |k: usize| {
-            let share = at + (k as f64 - 0.5 * count as f64) / count as f64;
-            reach * (2.0 * share - 1.0)
-        };
+        let (across, reach) = across(angle, aspect);
+        let edge = |k: usize| edge(k, count, at, reach);
         let mut lines = [NO_LINE; 4];
         if k > 0 {
             lines[0] = across.extend(-edge(k));
@@ -144,6 +140,53 @@ impl Part {
                 DVec3::new(0.0, -1.0, top),
             ],
             circle: circle(1.0),
+        }
+    }
+}
+
+/// The way across a curtain, whose product with a place of the picture is in half heights, and the
+/// largest such product.
+fn across(angle: f64, aspect: f64) -> (DVec2, f64) {
+    let across = DVec2::new(aspect * angle.cos(), angle.sin());
+    (across, across.x.abs() + across.y.abs())
+}
+
+/// Where band `k` of `count` of a curtain begins.
+fn edge(k: usize, count: usize, at: f64, reach: f64) -> f64 {
+    let share = at + (k as f64 - 0.5 * count as f64) / count as f64;
+    reach * (2.0 * share - 1.0)
+}
+
+/// How near to a curtain's edge it is taken by, in half heights of the picture.
+const GRIP: f64 = 0.06;
+
+impl Comparison {
+    /// Whether a hand at `ndc` takes its curtain or loupe, in a picture of `aspect`.
+    pub fn is_taken_at(&self, ndc: DVec2, aspect: f64) -> bool {
+        match self.mode {
+            CompareMode::Curtain => {
+                let (across, reach) = across(self.angle.radians(), aspect);
+                let count = self.of.len();
+                (1..count).any(|k| (across.dot(ndc) - edge(k, count, self.at, reach)).abs() <= GRIP)
+            }
+            CompareMode::Loupe => Part::loupe(true, self, aspect).shows(ndc, aspect),
+            _ => false,
+        }
+    }
+
+    /// Moves the curtain or loupe as far as a hand that holds it.
+    pub fn drag(&mut self, from: DVec2, to: DVec2, aspect: f64) {
+        match self.mode {
+            CompareMode::Curtain => {
+                let (across, reach) = across(self.angle.radians(), aspect);
+                let by = across.dot(to - from) / (2.0 * reach);
+                self.at = (self.at + by).clamp(0.0, 1.0);
+            }
+            CompareMode::Loupe => {
+                let by = (to - from) * DVec2::new(0.5, -0.5);
+                self.centre = (self.centre + by).clamp(DVec2::ZERO, DVec2::ONE);
+            }
+            _ => {}
         }
     }
 }
@@ -333,6 +376,27 @@ mod tests {
             left.shows(DVec2::new(-0.51, 0.9), 1.6) && right.shows(DVec2::new(-0.49, 0.9), 1.6)
         );
         assert!(left.is_cut() && !Part::WHOLE.is_cut());
+    }
+
+    #[test]
+    fn a_hand_takes_a_curtain_by_its_edge_and_it_stays_under_the_hand() {
+        let mut curtain = Comparison {
+            at: 0.3,
+            angle: Degrees(30.0),
+            of: vec![Member::State(0), Member::State(1)],
+            ..Comparison::new(CompareMode::Curtain, Vec::new())
+        };
+        let (across, reach) = across(curtain.angle.radians(), 1.6);
+        let at = across * (edge(1, 2, 0.3, reach) / across.length_squared());
+        assert!(curtain.is_taken_at(at, 1.6));
+        assert!(!curtain.is_taken_at(at + across * 0.2, 1.6));
+        let to = at + DVec2::new(0.2, -0.1);
+        curtain.drag(at, to, 1.6);
+        assert!(curtain.is_taken_at(to, 1.6) && !curtain.is_taken_at(at, 1.6));
+        let mut loupe = Comparison::new(CompareMode::Loupe, Vec::new());
+        loupe.drag(DVec2::ZERO, DVec2::new(0.5, 0.5), 1.6);
+        assert!(loupe.is_taken_at(DVec2::new(0.5, 0.5), 1.6));
+        assert!(!loupe.is_taken_at(DVec2::new(-0.5, -0.5), 1.6));
     }
 
     #[test]

@@ -420,10 +420,21 @@ pub struct Scene {
     /// Indices into [`Exhibit::lamps`], at most [`MAX_LAMPS`].
     pub lamps: Vec<usize>,
     pub ambient: Ambient,
+    /// Share of the light that comes through the sheet from behind, 0…1, beside what lamps give: the
+    /// place of a slider between reflected and transmitted light.
+    pub transmitted: f64,
     pub exposure: Exposure,
     pub enhance: Enhancement,
     /// The language of the captions; `None` is the exhibit's first.
     pub language: Option<String>,
+}
+
+impl Scene {
+    /// Whether light comes through the sheet.
+    pub fn is_lit_from_behind(&self, exhibit: &Exhibit) -> bool {
+        let is_behind = |&lamp: &usize| exhibit.lamps[lamp].kind.is_behind();
+        self.transmitted > 0.0 || self.lamps.iter().any(is_behind)
+    }
 }
 
 /// What is shown other than it is, for the eye alone: said on every picture while on, and never part

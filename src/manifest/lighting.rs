@@ -106,8 +106,18 @@ impl Exhibit {
             light.amount *= exposure;
         }
         light_table *= exposure;
-        let ambient =
+        let mut ambient =
             tint(LampColour::Temperature(scene.ambient.kelvin), white) * (ambient_lux * exposure);
+        if scene.transmitted > 0.0 {
+            // From lamps alone to a neutral light table alone, under which an ordinary sheet looks as
+            // bright.
+            let reflected = 1.0 - scene.transmitted;
+            for light in &mut lights {
+                light.amount *= reflected;
+            }
+            ambient *= reflected;
+            light_table += DVec3::splat(scene.transmitted / TABLE_TRANSMITTANCE);
+        }
         Lighting {
             lights,
             ambient,

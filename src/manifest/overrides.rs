@@ -47,6 +47,8 @@ pub struct Overrides {
     pub camera: Option<String>,
     /// `MODE:A,B`, what follows as in a manifest: `curtain:state:before,state:after,at=0.4`.
     pub compare: Option<String>,
+    /// How much of the light comes through the sheet, 0 to 1.
+    pub transmitted: Option<f64>,
     /// `key=value,…` as in a manifest; takes the place of the scene's own.
     pub enhance: Option<String>,
     /// A BCP 47 tag.
@@ -75,6 +77,16 @@ impl Overrides {
                 faults.extend(found);
             }
             self.choose_overlays(&mut scene, drawing, &mut faults);
+            match self.transmitted {
+                Some(share) if (0.0..=1.0).contains(&share) => scene.transmitted = share,
+                Some(share) => faults.push(fault(
+                    "--transmitted",
+                    share.to_string(),
+                    "a number from 0 to 1",
+                    "write 1 for a light table alone, 0 for the lamps alone",
+                )),
+                None => {}
+            }
             match self.enhancement(&scene) {
                 Ok(enhance) => scene.enhance = enhance,
                 Err(found) => faults.extend(found),

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use super::hand::Hand;
+use super::{comparing, hand::Hand};
 use crate::{
     optics::tier::Tier,
     stage::{
@@ -19,7 +19,7 @@ const TITLE: f32 = 1.25;
 const QUIET: f32 = 0.85;
 
 /// What the keys do, for the list of them and for the manual.
-pub const KEYS: [(&str, &str); 15] = [
+pub const KEYS: [(&str, &str); 20] = [
     ("drag", "turn the sheet; move it when zoomed in"),
     ("wheel, + −", "zoom"),
     ("double click", "true size and back"),
@@ -30,6 +30,14 @@ pub const KEYS: [(&str, &str); 15] = [
     ("S, Shift + S", "next state, back"),
     ("O", "overlays: none, each, all"),
     ("[  ]", "fainter, stronger overlays"),
+    ("X, Shift + X", "next comparison, back"),
+    (",  .", "move the curtain, more or less of a blend"),
+    ("<  >", "turn the curtain, larger loupe, ΔE00 or light"),
+    ("9  0", "less, more light through the sheet"),
+    (
+        "R, Shift + R, B, Z",
+        "relief only, steeper, contrast, sharper",
+    ),
     ("N, P", "next scene, back"),
     ("H", "the scene as it was"),
     ("T, Shift + T", "next tier of accuracy, back"),
@@ -177,7 +185,26 @@ pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
         tier if tier == Tier::default() => "",
         tier => tier.name(),
     };
-    lines.push(joined(&[shown.scene.side.word(), state, &lamp, size, tier]));
+    let compared = shown
+        .scene
+        .compare
+        .as_ref()
+        .map(comparing::words)
+        .unwrap_or_default();
+    let through = match shown.scene.transmitted {
+        0.0 => String::new(),
+        share => format!("{:.0} % of the light through the sheet", share * 100.0),
+    };
+    let parts = [
+        shown.scene.side.word(),
+        state,
+        &compared,
+        &lamp,
+        &through,
+        size,
+        tier,
+    ];
+    lines.push(joined(&parts));
     lines.retain(|line| !line.is_empty());
     lines
 }

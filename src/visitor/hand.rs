@@ -7,6 +7,7 @@ use bevy::prelude::Resource;
 use glam::{DQuat, DVec2, DVec3};
 
 use super::{
+    comparing::{self, TURN_S},
     intent::Intent,
     lamp::LampPlace,
     motion::{self, Speed},
@@ -14,7 +15,7 @@ use super::{
 };
 use crate::{
     manifest::{
-        exhibit::{Camera, Drawing, Exhibit, Scene, SideName},
+        exhibit::{Camera, CompareMode, Comparison, Drawing, Exhibit, Scene, SideName},
         eye::Eye,
         frames::other_side,
     },
@@ -42,12 +43,25 @@ const FLIP_STEP_S: f64 = 0.1;
 /// A glide that would go on by less of the picture's width has ended.
 const GLIDE_END: f64 = 5e-4;
 
+/// The relief is made no steeper.
+const STEEPEST: f64 = 8.0;
+/// Levels between which a key stretches the contrast: most drawings on old paper lie between them.
+const STRETCH: DVec2 = DVec2::new(0.1, 0.75);
+/// Of sharpening, by a key.
+const SHARPEN: f64 = 0.6;
+
+fn takes_turns(comparison: &Comparison) -> bool {
+    comparison.mode == CompareMode::Flicker
+}
+
 /// What a drag does, decided when it begins to move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Grip {
     Undecided,
     Turn,
     Move,
+    /// The curtain or the loupe.
+    Compare,
 }
 
 /// How large the picture is.
@@ -118,6 +132,8 @@ pub struct Hand {
     zoom: Option<(f64, DVec2)>,
     /// Width in mm before true size.
     before_true_size: Option<f64>,
+    /// For how long the member has been seen that has its turn, in seconds.
+    turns_for: f64,
     /// Seconds since the sheet began to be turned over.
     flip: Option<f64>,
     /// Both sides are loaded and stay so.
@@ -155,6 +171,7 @@ impl Hand {
             grip: None,
             zoom: None,
             before_true_size: None,
+            turns_for: 0.0,
             flip: None,
             both_sides: false,
             good: None,
@@ -239,6 +256,47 @@ impl Hand {
                 self.view.step_overlay(drawing);
             }
             Intent::Opacity(by) => self.view.fade(by),
+            Intent::StepCompare(by) => {
+                let scene = self.shown().scene;
+                let written = self.written().compare.clone();
+                self.view.compare = comparing::stepped(&self.exhibit, &scene, written.as_ref(), by);
+                self.turns_for = 0.0;
+            }
+            Intent::ShiftCompare(by) => {
+                if let Some(comparison) = &mut self.view.compare {
+                    comparing::shift(comparison, by);
+                }
+            }
+            Intent::TurnCompare(by) => {
+                if let Some(comparison) = &mut self.view.compare {
+                    comparing::turn(comparison, by);
+                }
+            }
+            Intent::Transmit(by) => {
+                self.view.transmitted = (self.view.transmitted + by).clamp(0.0, 1.0);
+            }
+            Intent::ReliefOnly => {
+                let enhance = &mut self.view.enhance;
+                enhance.relief_only = !enhance.relief_only;
+            }
+            Intent::Exaggerate => {
+                let enhance = &mut self.view.enhance;
+                enhance.exaggerate = match enhance.exaggerate {
+                    times if times >= STEEPEST => 1.0,
+                    times => 2.0 * times,
+                };
+            }
+            Intent::Stretch => {
+                let enhance = &mut self.view.enhance;
+                enhance.stretch = match enhance.stretch {
+                    None => Some(STRETCH),
+                    Some(_) => None,
+                };
+            }
+            Intent::Sharpen => {
+                let enhance = &mut self.view.enhance;
+                enhance.sharpen = if enhance.sharpen > 0.0 { 0.0 } else { SHARPEN };
+            }
             Intent::StepScene(by) => {
                 let count = self.exhibit.scenes.len();
                 let mut next = wrapped(self.scene, by, count);
@@ -280,6 +338,16 @@ impl Hand {
                 self.finish_flip();
             }
         }
+        if let Some(comparison) = self.view.compare.as_mut().filter(|c| takes_turns(c))
+            && settled
+            && !self.calm
+        {
+            self.turns_for += seconds.min(TURN_S);
+            if self.turns_for >= TURN_S {
+                self.turns_for = 0.0;
+                comparing::take_turns(comparison);
+            }
+        }
         if self.grip.is_some() {
             self.speed.forget(seconds);
         } else if self.turn != DVec2::ZERO {
@@ -299,6 +367,11 @@ impl Hand {
         }
     }
 
+    /// Whether members of a comparison take turns by themselves.
+    pub fn takes_turns(&self) -> bool {
+        !self.calm && self.view.compare.as_ref().is_some_and(takes_turns)
+    }
+
     /// Whether something goes on moving without being touched.
     pub fn is_moving(&self) -> bool {
         let glides = self.turn != DVec2::ZERO || self.speed != Speed::default();
@@ -313,6 +386,9 @@ impl Hand {
         scene.camera = self.camera();
         scene.side = self.view.side;
         scene.state = self.view.state;
+        scene.compare.clone_from(&self.view.compare);
+        scene.enhance = self.view.enhance;
+        scene.transmitted = self.view.transmitted;
         // A lamp that is lowered darkens the sheet, as before the eyes of a visitor.
         if self.exposed_for.is_some() {
             scene.exposure.illuminance = self.exposed_for;
@@ -487,7 +563,13 @@ impl Hand {
     fn drag(&mut self, from: DVec2, to: DVec2) {
         let grip = match self.grip {
             Some(Grip::Undecided) | None => {
-                if self.camera().width_mm < ZOOMED * self.widest() && self.turn == DVec2::ZERO {
+                let aspect = self.picture.aspect;
+                let taken = |comparison: &Comparison| comparison.is_taken_at(from, aspect);
+                if self.view.compare.as_ref().is_some_and(taken) {
+                    Grip::Compare
+                } else if self.camera().width_mm < ZOOMED * self.widest()
+                    && self.turn == DVec2::ZERO
+                {
                     Grip::Move
                 } else {
                     Grip::Turn
@@ -496,7 +578,11 @@ impl Hand {
             Some(grip) => grip,
         };
         self.grip = Some(grip);
-        if grip == Grip::Turn {
+        if grip == Grip::Compare {
+            if let Some(comparison) = &mut self.view.compare {
+                comparison.drag(from, to, self.picture.aspect);
+            }
+        } else if grip == Grip::Turn {
             // The side that faces us follows the hand.
             let by = self.on_table(DVec2::new(-(to.y - from.y), to.x - from.x) * TURN_DEG);
             self.turn = (self.turn + by).clamp_length_max(FARTHEST_TURN_DEG);

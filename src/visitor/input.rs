@@ -29,6 +29,7 @@ const PAN: f64 = 0.1;
 /// Parts of the hemisphere's radius that one press of an arrow moves the lamp by.
 const LAMP_STEP: f64 = 0.06;
 const OPACITY_STEP: f64 = 0.1;
+const TRANSMIT_STEP: f64 = 0.1;
 /// Heights of the lamp that have a key, in degrees.
 const OVERHEAD_DEG: f64 = 90.0;
 const OBLIQUE_DEG: f64 = 45.0;
@@ -210,7 +211,13 @@ impl Devices {
         // A held key goes on zooming and moving, and does nothing else twice.
         let goes_on = matches!(
             intent,
-            Intent::Pan(_) | Intent::Zoom { .. } | Intent::MoveLamp(_) | Intent::Opacity(_)
+            Intent::Pan(_)
+                | Intent::Zoom { .. }
+                | Intent::MoveLamp(_)
+                | Intent::Opacity(_)
+                | Intent::ShiftCompare(_)
+                | Intent::TurnCompare(_)
+                | Intent::Transmit(_)
         );
         if goes_on || !input.repeat {
             want(intent);
@@ -253,6 +260,17 @@ impl Devices {
                 "o" => Intent::StepOverlay,
                 "[" => Intent::Opacity(-OPACITY_STEP),
                 "]" => Intent::Opacity(OPACITY_STEP),
+                "x" => Intent::StepCompare(if self.shift { -1 } else { 1 }),
+                "," => Intent::ShiftCompare(-1.0),
+                "." => Intent::ShiftCompare(1.0),
+                "<" | ";" => Intent::TurnCompare(-1.0),
+                ">" | ":" => Intent::TurnCompare(1.0),
+                "9" => Intent::Transmit(-TRANSMIT_STEP),
+                "0" => Intent::Transmit(TRANSMIT_STEP),
+                "r" if self.shift => Intent::Exaggerate,
+                "r" => Intent::ReliefOnly,
+                "b" => Intent::Stretch,
+                "z" => Intent::Sharpen,
                 "n" => Intent::StepScene(1),
                 "p" => Intent::StepScene(-1),
                 "t" => Intent::StepTier(if self.shift { -1 } else { 1 }),

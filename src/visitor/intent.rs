@@ -48,6 +48,22 @@ pub enum Intent {
     StepOverlay,
     /// Makes the overlays stronger or fainter by this share.
     Opacity(f64),
+    /// To another comparison, forwards (1) or back (−1), with none between the last and the first.
+    StepCompare(i32),
+    /// Moves the curtain or the share of a blend, a loupe's magnification, a difference's scale.
+    ShiftCompare(f64),
+    /// Turns the curtain, makes the loupe larger, measures a difference otherwise.
+    TurnCompare(f64),
+    /// More (or less) of the light comes through the sheet, by this share.
+    Transmit(f64),
+    /// Shows the relief without colour, or with it again.
+    ReliefOnly,
+    /// To the next steepness of the relief.
+    Exaggerate,
+    /// Stretches the contrast, or no longer.
+    Stretch,
+    /// Sharpens, or no longer.
+    Sharpen,
     /// To another scene, forwards (1) or back (−1).
     StepScene(i32),
     /// To another tier of accuracy, forwards (1) or back (−1).

@@ -5,11 +5,13 @@
 //! | events of mouse, keys and fingers → [`Intent`] | `input` |
 //! | [`Intent`] and time → [`Hand`] | [`hand`], `view`, `lamp`, `motion` |
 //! | [`Hand`] → [`crate::stage::Shown`] | [`Hand::shown`] |
+//! | comparisons in the hand | `comparing` |
 //! | texts | `caption` |
 //! | which tier serves what is shown | `foresight` |
 //! | the window, and its rest | `window` |
 
 mod caption;
+mod comparing;
 mod display;
 mod foresight;
 pub mod hand;

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::lamp::LampPlace;
-use crate::manifest::exhibit::{Camera, Drawing, Exhibit, MAX_OVERLAYS, Scene, SideName};
+use crate::manifest::exhibit::{
+    Camera, Comparison, Drawing, Enhancement, Exhibit, MAX_OVERLAYS, Scene, SideName,
+};
 
 /// Opacity of an overlay that the scene does not mention.
 const OPACITY: f64 = 0.7;
@@ -30,6 +32,10 @@ pub struct View {
     layers: Vec<Layer>,
     /// Of the first lamp that can be moved.
     pub lamp: Option<LampPlace>,
+    pub compare: Option<Comparison>,
+    pub enhance: Enhancement,
+    /// Share of the light that comes through the sheet.
+    pub transmitted: f64,
 }
 
 impl View {
@@ -60,6 +66,9 @@ impl View {
             state: scene.state,
             layers,
             lamp: movable_lamp(exhibit, scene).and_then(|lamp| LampPlace::of(&exhibit.lamps[lamp])),
+            compare: scene.compare.clone(),
+            enhance: scene.enhance,
+            transmitted: scene.transmitted,
         }
     }
 
@@ -102,13 +111,28 @@ impl View {
         if self.lamp != written.lamp && view.lamp.is_some() {
             view.lamp = self.lamp;
         }
+        // What is compared is known by its place: it is kept where the places are the same.
+        if self.compare != written.compare && is_alike(before, after) {
+            view.compare = self.compare.clone();
+        }
+        if self.enhance != written.enhance {
+            view.enhance = self.enhance;
+        }
+        if self.transmitted != written.transmitted {
+            view.transmitted = self.transmitted;
+        }
         view
     }
 
     /// Whether `other` shows the same of the sheet, wherever eye and lamp are: these need no
     /// maps.
     pub fn shows_as(&self, other: &Self) -> bool {
-        (self.side, self.state) == (other.side, other.state) && self.layers == other.layers
+        let compared = |view: &Self| view.compare.as_ref().map(|c| (c.mode, c.of.clone()));
+        (self.side, self.state) == (other.side, other.state)
+            && self.layers == other.layers
+            && compared(self) == compared(other)
+            && self.enhance.relief_only == other.enhance.relief_only
+            && (self.transmitted > 0.0) == (other.transmitted > 0.0)
     }
 
     /// The overlays that lie on `side`, from the lowest.
@@ -169,6 +193,13 @@ impl View {
             _ => exhibit.clone(),
         }
     }
+}
+
+/// Whether two drawings have the same states, sides and overlays, by their places.
+fn is_alike(a: &Drawing, b: &Drawing) -> bool {
+    let states = |d: &Drawing| d.states.iter().map(|s| s.id.clone()).collect::<Vec<_>>();
+    let overlays = |d: &Drawing| d.overlays.iter().map(|o| o.id.clone()).collect::<Vec<_>>();
+    states(a) == states(b) && overlays(a) == overlays(b) && a.verso.is_some() == b.verso.is_some()
 }
 
 /// `place` of `count` after `by` steps, around.

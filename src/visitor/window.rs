@@ -417,7 +417,7 @@ fn rest(
     pace.left = pace.left.saturating_sub(1);
     if !settled && !pace.stuck {
         pace.left = SETTLING_FRAMES;
-    } else if shown.is_changed() || texts.is_changed() || hand.is_moving() {
+    } else if shown.is_changed() || texts.is_changed() || hand.is_moving() || hand.takes_turns() {
         pace.left = pace.left.max(CHANGE_FRAMES);
     } else if pace.left == 0 && hand.is_hurried() {
         // At rest, the picture refines; a hand that only pauses does not wait for that.

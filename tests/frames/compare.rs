@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use recto::{
-    colour::{delta_e00, lab_from_linear},
+    colour::{delta_e00, lab_from_linear, luminance},
     develop::Print,
     manifest::{
         Exhibit, Scene,
@@ -191,4 +191,69 @@ fn a_blend_mixes_light_and_a_difference_measures_it() {
     assert!(room::largest_difference(&found, &coded(10.0)) < STEP);
     assert!(room::largest_difference(&found, &coded(11.0)) > STEP);
     assert!(!found.legend.is_empty() && found.legend.iter().any(|texel| texel[3] > 0.0));
+}
+
+/// The bound.
+const DELTA_E: f64 = 0.05;
+
+#[test]
+fn a_difference_s_numbers_are_those_of_a_colour_crate() {
+    let mut compared = Compared::new(CompareMode::Difference);
+    compared.comparison().coded = false;
+    let (found, alone) = (compared.picture(), compared.alone(SIZE));
+    compared.comparison().full_luminance = Some(0.1);
+    let of_light = compared.picture();
+    let (mut largest, mut off, mut off_light) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for (i, (a, b)) in alone[0].pixels.iter().zip(&alone[1].pixels).enumerate() {
+        let [a, b] = [*a, *b].map(|light| light.map(f64::from));
+        let [a_lab, b_lab] = [a, b].map(|light| lab_from_linear(light.map(|v| v.clamp(0.0, 1.0))));
+        let expected = delta_e00(a_lab, b_lab);
+        largest = largest.max(expected);
+        off = off.max((f64::from(found.pixels[i][0]) - expected).abs());
+        let expected = (luminance(a) - luminance(b)).abs();
+        off_light = off_light.max((f64::from(of_light.pixels[i][1]) - expected).abs());
+    }
+    assert!(off < DELTA_E, "{off}");
+    assert!(off_light < 1e-5, "{off_light}");
+    // There is something to be wrong about.
+    assert!(largest > 100.0 * DELTA_E, "{largest}");
+}
+
+#[test]
+fn through_glass_the_other_side_lies_mirrored_under_this_one() {
+    let mut compared = Compared::new(CompareMode::Glass);
+    compared.comparison().of = vec![Member::Side(SideName::Recto), Member::Side(SideName::Verso)];
+    compared.scene.camera.turn.0 = 20.0;
+    let (found, alone) = (compared.picture(), compared.alone(SIZE));
+    let mixed = |mirrored: bool| {
+        let mut mixed = alone[0].clone();
+        let width = SIZE[0] as usize;
+        for (i, a) in mixed.pixels.iter_mut().enumerate() {
+            let at = if mirrored {
+                i / width * width + width - 1 - i % width
+            } else {
+                i
+            };
+            let b = alone[1].pixels[at];
+            *a = std::array::from_fn(|c| 0.5 * (a[c] + b[c]));
+        }
+        mixed
+    };
+    assert!(room::largest_difference(&found, &mixed(true)) < STEP);
+    assert!(room::largest_difference(&found, &mixed(false)) > STEP);
+}
+
+#[test]
+fn those_who_take_turns_are_seen_one_at_a_time() {
+    let mut compared = Compared::new(CompareMode::Flicker);
+    let alone = compared.alone(SIZE);
+    for turn in [0, 1, 2] {
+        compared.comparison().turn = turn;
+        let found = print(&compared.picture());
+        assert!(found.pixels == print(&alone[turn % 2]).pixels, "{turn}");
+        assert!(
+            found.pixels != print(&alone[(turn + 1) % 2]).pixels,
+            "{turn}"
+        );
+    }
 }

@@ -47,6 +47,9 @@ record! {
             lamps: List<Id, 0, MAX_LAMPS>,
             /// Even light from the whole room. Without it: none.
             ambient: RawAmbient,
+            /// How much of the light comes through the sheet, 0 to 1: 1 is a light table alone, 0 the
+            /// lamps alone. Without it: 0.
+            transmitted: Fraction,
             /// What a display shows at full level.
             exposure: RawExposure,
             /// What is shown other than it is, for the eye; every picture says so. Without it: nothing.

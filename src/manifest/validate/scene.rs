@@ -170,7 +170,10 @@ impl Validator<'_, '_> {
             .and_then(|language| self.language(language, &trail.key("language")));
         let lamps = self.scene_lamps(raw, trail, around.lamp_names);
         let ambient = ambient(raw.ambient.as_ref());
-        if lamps.as_ref().is_some_and(Vec::is_empty) && ambient.illuminance.0 == 0.0 {
+        if lamps.as_ref().is_some_and(Vec::is_empty)
+            && ambient.illuminance.0 == 0.0
+            && raw.transmitted.is_none_or(|share| share.0 == 0.0)
+        {
             let words = Words::new(
                 "no light",
                 "at least one lamp, or ambient light",
@@ -209,6 +212,7 @@ impl Validator<'_, '_> {
             camera,
             lamps: lamps?,
             ambient,
+            transmitted: raw.transmitted.map_or(0.0, |share| share.0),
             exposure: exposure(raw.exposure.as_ref(), around.exposure),
             enhance: self.enhance(raw.enhance.as_ref(), &trail.key("enhance")),
             language,
@@ -500,6 +504,7 @@ impl RawScene {
             camera: None,
             lamps: None,
             ambient: None,
+            transmitted: None,
             exposure: None,
             enhance: None,
             language: None,
@@ -521,6 +526,7 @@ impl RawScene {
             camera: self.camera.or(other.camera),
             lamps: self.lamps.or(other.lamps),
             ambient: self.ambient.or(other.ambient),
+            transmitted: self.transmitted.or(other.transmitted),
             exposure: self.exposure.or(other.exposure),
             enhance: self.enhance.or(other.enhance),
             language: self.language.or(other.language),

@@ -448,7 +448,7 @@ fn through(
             .elevation_deg()
             .is_none_or(|e| e < 0.0)
     };
-    if !scene.lamps.iter().any(is_behind) {
+    if scene.transmitted == 0.0 && !scene.lamps.iter().any(is_behind) {
         return Ok((None, None));
     }
     let paper = &drawing.paper;
