@@ -36,7 +36,8 @@ struct Composite {
 
 @vertex
 fn vertex(@location(0) corner: vec3<f32>) -> @builtin(position) vec4<f32> {
-    return vec4(corner.xy, 0.5, 1.0);
+    // Nearest: depth is reversed.
+    return vec4(corner.xy, 1.0, 1.0);
 }
 
 fn first_at(pixel: vec2<i32>) -> vec3<f32> {

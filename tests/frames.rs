@@ -20,7 +20,6 @@ mod colour;
 mod compare;
 #[path = "frames/crops.rs"]
 mod crops;
-mod enhance;
 #[path = "frames/enhance.rs"]
 mod enhance;
 #[path = "frames/lamps.rs"]

@@ -235,6 +235,16 @@ mod tests {
     }
 
     #[test]
+    fn the_mean_cosine_is_that_of_both_lobes() {
+        let phase = Phase {
+            forward_share: 0.7,
+            g_forward: 0.5,
+            g_backward: -0.2,
+        };
+        assert!((phase.mean_cosine() - 0.29).abs() < 1e-12);
+    }
+
+    #[test]
     fn the_design_s_walks_are_met() {
         // OPTICS.md, "Paper slab": what walks gave per unit of flux (T(1) = .96). The mean cosine
         // and the thin sheet's σa are not printed there; 1/3 and .01 give its closed forms, the

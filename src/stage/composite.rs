@@ -27,6 +27,8 @@ const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 const SCALE_STEPS: u32 = 1024;
 /// Before the camera of the picture itself, which is 0.
 const FIRST_ORDER: isize = -4;
+/// Frames until new images, cameras and pipelines draw.
+const LEAVING_FRAMES: u32 = 4;
 
 /// Size of the picture in pixels.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +41,16 @@ pub struct PictureCamera;
 /// Draws one member's picture.
 #[derive(Component)]
 pub struct MemberCamera;
+
+/// Goes some frames later, when what takes its place has reached the picture.
+#[derive(Component)]
+pub struct Retired(u32);
+
+impl Default for Retired {
+    fn default() -> Self {
+        Self(LEAVING_FRAMES)
+    }
+}
 
 /// Whether pictures are put together for `scene`: its sheets are drawn as plain light then.
 pub fn is_composite(scene: &Scene) -> bool {
@@ -193,7 +205,12 @@ pub fn compose(
     let size = size.map_or(UVec2::ONE, |size| size.0.max(UVec2::ONE));
     if composite.pictures.len() != count || (composite.size != size && count > 0) {
         for entity in composite.entities.drain(..) {
-            commands.entity(entity).despawn();
+            let mut entity = commands.entity(entity);
+            if count == 0 {
+                entity.insert(Retired::default());
+            } else {
+                entity.despawn();
+            }
         }
         *composite = Composite {
             size,
@@ -254,6 +271,16 @@ fn build(
     ));
     composite.entities.push(whole.id());
     composite.material = Some(material);
+}
+
+/// Lets go of what was replaced.
+pub fn retire(mut commands: Commands, mut retired: Query<(Entity, &mut Retired)>) {
+    for (entity, mut retired) in &mut retired {
+        retired.0 = retired.0.saturating_sub(1);
+        if retired.0 == 0 {
+            commands.entity(entity).despawn();
+        }
+    }
 }
 
 /// The members' cameras draw when the picture's own does.

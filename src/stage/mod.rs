@@ -161,6 +161,7 @@ impl Plugin for StagePlugin {
                 sides::arrange,
                 composite::compose,
                 composite::follow,
+                composite::retire,
             )
                 .chain()
                 .in_set(StageSet::Arrange)

@@ -12,7 +12,7 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::{
     Library, Shared, Shown, TABLE, Waker,
-    composite::{is_composite, layer_of},
+    composite::{Retired, is_composite, layer_of},
     library::{Facts, Held, Request, is_lit},
 };
 use crate::{
@@ -55,6 +55,8 @@ pub struct Arranged {
     /// The photometric files of the IES lamps, and their texture.
     profiles: (Vec<Arc<Photometry>>, Option<Handle<Image>>),
     settled: bool,
+    /// Something was built in this frame, which takes some frames to reach the picture.
+    fresh: bool,
 }
 
 struct ArrangedSide {
@@ -76,7 +78,13 @@ impl Arranged {
             sides: Vec::new(),
             profiles: (Vec::new(), None),
             settled: false,
+            fresh: false,
         }
+    }
+
+    /// Whether something was built in this frame: it takes some frames to reach the picture.
+    pub fn is_fresh(&self) -> bool {
+        self.fresh
     }
 
     /// Whether the stage shows what [`Shown`] says, with all its maps.
@@ -123,6 +131,9 @@ pub fn arrange(
         mut materials,
         mut images,
     } = supplies;
+    if arranged.fresh {
+        arranged.fresh = false;
+    }
     if arranged.settled && !shown.is_changed() {
         return;
     }
@@ -162,9 +173,17 @@ pub fn arrange(
             return;
         };
         library.bypass_change_detection().keep(&requests);
+        // Under a last pass that is only being built, the last picture stays.
+        let stays = composite && !arranged.composite;
         for side in arranged.sides.drain(..) {
-            commands.entity(side.entity).despawn();
+            let mut entity = commands.entity(side.entity);
+            if stays {
+                entity.insert(Retired::default());
+            } else {
+                entity.despawn();
+            }
         }
+        arranged.fresh = true;
         let mut held = held.into_iter();
         for (k, (needs, _)) in wanted.iter().enumerate() {
             let drawing = &shown.exhibit.drawings[members[k].scene.drawing];

@@ -415,7 +415,7 @@ fn rest(
     }
     pace.begun |= settled;
     pace.left = pace.left.saturating_sub(1);
-    if !settled && !pace.stuck {
+    if (!settled && !pace.stuck) || arranged.is_fresh() {
         pace.left = SETTLING_FRAMES;
     } else if shown.is_changed() || texts.is_changed() || hand.is_moving() || hand.takes_turns() {
         pace.left = pace.left.max(CHANGE_FRAMES);

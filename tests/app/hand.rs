@@ -1,11 +1,11 @@
 //! Wishes → what is shown, without a window.
 
-use std::{fs, sync::Arc};
+use std::{collections::BTreeSet, fs, sync::Arc};
 
 use glam::{DVec2, DVec3};
 use recto::{
     manifest::{
-        exhibit::{Exhibit, LampKind, SideName},
+        exhibit::{CompareMode, Comparison, Exhibit, LampKind, SideName},
         eye::Eye,
     },
     optics::tier::Tier,
@@ -418,4 +418,109 @@ fn a_cheap_tier_in_motion_and_the_exact_one_at_rest() {
     isle.serve(serving(Tier::Study, Tier::Draft));
     isle.hurry(true);
     assert_eq!(isle.shown().tier, Tier::Isle);
+}
+
+/// A hand on two sides of which a curtain, a loupe or a difference can be made.
+fn comparing(steps: usize) -> (tempfile::TempDir, Hand) {
+    let (folder, mut hand) = hand("whole");
+    for _ in 0..steps {
+        hand.apply(Intent::StepCompare(1));
+    }
+    (folder, hand)
+}
+
+fn comparison(hand: &Hand) -> Comparison {
+    hand.shown().scene.compare.expect("a comparison")
+}
+
+#[test]
+fn comparisons_are_gone_through_and_end_with_none() {
+    let (_folder, mut hand) = comparing(0);
+    let mut seen = Vec::new();
+    for _ in 0..7 {
+        hand.apply(Intent::StepCompare(1));
+        seen.push(comparison(&hand).mode);
+    }
+    let all: BTreeSet<String> = seen.iter().map(|mode| format!("{mode:?}")).collect();
+    assert_eq!(all.len(), 7, "{seen:?}");
+    hand.apply(Intent::StepCompare(1));
+    assert_eq!(hand.shown().scene.compare, None);
+    hand.apply(Intent::StepCompare(-1));
+    assert_eq!(comparison(&hand).mode, CompareMode::Glass);
+    hand.apply(Intent::Home);
+    assert_eq!(hand.shown().scene.compare, None);
+}
+
+#[test]
+fn a_hand_on_the_curtain_moves_the_curtain_and_beside_it_the_sheet() {
+    let (_folder, mut hand) = comparing(1);
+    assert_eq!(comparison(&hand).mode, CompareMode::Curtain);
+    let pose = hand.shown().pose;
+    let drag = |hand: &mut Hand, from: DVec2, to: DVec2| {
+        hand.apply(Intent::Take);
+        hand.apply(Intent::Drag { from, to });
+        hand.apply(Intent::Release);
+    };
+    drag(&mut hand, DVec2::ZERO, DVec2::new(0.4, 0.1));
+    assert!((comparison(&hand).at - 0.7).abs() < 1e-9);
+    assert_eq!(hand.shown().pose, pose);
+    drag(&mut hand, DVec2::ZERO, DVec2::new(0.4, 0.1));
+    assert!((comparison(&hand).at - 0.7).abs() < 1e-9);
+    assert_ne!(hand.shown().pose, pose);
+    settle(&mut hand);
+    // However far it is dragged, it stays in the picture.
+    drag(&mut hand, DVec2::new(0.4, 0.0), DVec2::new(9.0, 0.0));
+    assert_eq!(comparison(&hand).at, 1.0);
+}
+
+#[test]
+fn nothing_flashes_more_than_three_times_a_second() {
+    const SECONDS: f64 = 10.0;
+    for frame_s in [1e-3, 1.0 / 60.0, 0.7] {
+        let (_folder, mut hand) = comparing(6);
+        assert_eq!(comparison(&hand).mode, CompareMode::Flicker);
+        assert!(hand.takes_turns());
+        let (mut elapsed, mut changes, mut turn) = (0.0, 0, comparison(&hand).turn);
+        while elapsed < SECONDS {
+            hand.advance(frame_s, true);
+            elapsed += frame_s;
+            let now = comparison(&hand).turn;
+            changes += u32::from(now != turn);
+            turn = now;
+        }
+        assert!(
+            changes >= 10 && f64::from(changes) <= 3.0 * SECONDS,
+            "{frame_s}: {changes}"
+        );
+    }
+    // With reduced motion nothing changes by itself, and a key goes on.
+    let (_folder, exhibit) = exhibit();
+    let mut calm = Hand::new(exhibit, 0, Tier::Draft, PICTURE, true);
+    for _ in 0..6 {
+        calm.apply(Intent::StepCompare(1));
+    }
+    for _ in 0..100 {
+        calm.advance(0.1, true);
+    }
+    assert!(!calm.takes_turns() && comparison(&calm).turn == 0);
+    calm.apply(Intent::ShiftCompare(1.0));
+    assert_eq!(comparison(&calm).turn, 1);
+}
+
+#[test]
+fn enhancement_and_light_through_the_sheet_are_steps_of_keys() {
+    let (_folder, mut hand) = comparing(0);
+    hand.apply(Intent::ReliefOnly);
+    hand.apply(Intent::Exaggerate);
+    hand.apply(Intent::Stretch);
+    hand.apply(Intent::Sharpen);
+    let enhance = hand.shown().scene.enhance;
+    assert_eq!(enhance.marks().len(), 4, "{enhance:?}");
+    for _ in 0..12 {
+        hand.apply(Intent::Transmit(0.1));
+    }
+    assert_eq!(hand.shown().scene.transmitted, 1.0);
+    hand.apply(Intent::Home);
+    assert_eq!(hand.shown().scene.enhance.marks().len(), 0);
+    assert_eq!(hand.shown().scene.transmitted, 0.0);
 }
