@@ -65,6 +65,44 @@ impl SceneArguments {
     }
 }
 
+/// The options that say these overrides, and the scene's name first.
+pub fn written(overrides: &Overrides) -> Vec<String> {
+    let Overrides {
+        scene,
+        drawing,
+        side,
+        state,
+        overlays,
+        lamps,
+        camera,
+        compare,
+        language,
+    } = overrides;
+    let one = |name: &str, value: Option<&str>| {
+        // In one word, so that a value may begin with a hyphen.
+        value.map(|value| format!("--{name}={value}"))
+    };
+    let many = |name: &'static str, values: &[String]| {
+        let word = move |value: &String| format!("--{name}={value}");
+        values.iter().map(word).collect::<Vec<_>>()
+    };
+    let mut words: Vec<String> = [
+        one("scene", scene.as_deref()),
+        one("drawing", drawing.as_deref()),
+        one("side", side.map(SideName::word)),
+        one("state", state.as_deref()),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    words.extend(many("overlay", overlays));
+    words.extend(many("lamp", lamps));
+    words.extend(one("camera", camera.as_deref()));
+    words.extend(one("compare", compare.as_deref()));
+    words.extend(one("language", language.as_deref()));
+    words
+}
+
 pub fn side() -> impl TypedValueParser<Value = SideName> {
     const SIDES: [SideName; 2] = [SideName::Recto, SideName::Verso];
     PossibleValuesParser::new(SIDES.map(SideName::word)).try_map(|word| {
