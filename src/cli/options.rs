@@ -65,7 +65,7 @@ impl SceneArguments {
     }
 }
 
-/// The options that say these overrides, and the scene's name first.
+/// The words that say these overrides on the command line.
 pub fn written(overrides: &Overrides) -> Vec<String> {
     let Overrides {
         scene,
@@ -78,28 +78,30 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
         compare,
         language,
     } = overrides;
-    let one = |name: &str, value: Option<&str>| {
-        // In one word, so that a value may begin with a hyphen.
-        value.map(|value| format!("--{name}={value}"))
+    let mut words = Vec::new();
+    let mut say = |name: &str, value: &str| match value.starts_with('-') {
+        // Two words would be taken for two options.
+        true => words.push(format!("--{name}={value}")),
+        false => words.extend([format!("--{name}"), value.to_owned()]),
     };
-    let many = |name: &'static str, values: &[String]| {
-        let word = move |value: &String| format!("--{name}={value}");
-        values.iter().map(word).collect::<Vec<_>>()
+    let mut one = |name: &str, value: Option<&str>| {
+        if let Some(value) = value {
+            say(name, value);
+        }
     };
-    let mut words: Vec<String> = [
-        one("scene", scene.as_deref()),
-        one("drawing", drawing.as_deref()),
-        one("side", side.map(SideName::word)),
-        one("state", state.as_deref()),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    words.extend(many("overlay", overlays));
-    words.extend(many("lamp", lamps));
-    words.extend(one("camera", camera.as_deref()));
-    words.extend(one("compare", compare.as_deref()));
-    words.extend(one("language", language.as_deref()));
+    one("scene", scene.as_deref());
+    one("drawing", drawing.as_deref());
+    one("side", side.map(SideName::word));
+    one("state", state.as_deref());
+    for overlay in overlays {
+        one("overlay", Some(overlay));
+    }
+    for lamp in lamps {
+        one("lamp", Some(lamp));
+    }
+    one("camera", camera.as_deref());
+    one("compare", compare.as_deref());
+    one("language", language.as_deref());
     words
 }
 

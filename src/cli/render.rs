@@ -214,12 +214,14 @@ impl Commission {
         let [width, height] = self.size;
         let mut words = vec!["render".to_owned(), path.display().to_string()];
         words.extend(options::written(&overrides));
-        words.extend([
-            format!("--size={width}x{height}"),
-            format!("--tier={}", tier.name()),
-            "--figure".to_owned(),
-            format!("--out={name}"),
-        ]);
+        let size = format!("{width}x{height}");
+        let rest = ["--size", &size, "--tier", tier.name(), "--figure", "--out"];
+        words.extend(rest.map(str::to_owned));
+        // A name that begins with a hyphen would be taken for an option.
+        words.push(match name.starts_with('-') {
+            true => format!("./{name}"),
+            false => name.into_owned(),
+        });
         words
     }
 

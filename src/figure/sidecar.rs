@@ -9,7 +9,7 @@ use super::{FigureError, scale::Scale};
 use crate::{
     manifest::{
         Exhibit, Scene, SideName,
-        exhibit::{Ambient, Camera, Comparison, Exposure, LampColour, LampKind, Member},
+        exhibit::{Ambient, Camera, Comparison, Exposure, LampColour, LampKind, Member, Surface},
     },
     needs::Needs,
     optics::tier::Tier,
@@ -78,6 +78,20 @@ impl Facts {
                     }));
                 }
             }
+        }
+        let drawing = exhibit.drawing_of(scene);
+        let shape = match &drawing.surface {
+            Surface::Flat => None,
+            Surface::Height(map) => Some((&map.file.path, json!(map.file.source))),
+            Surface::Gltf(path) => Some((path, Value::Null)),
+        };
+        if let Some((path, source)) = shape {
+            let name = path.strip_prefix(&exhibit.folder).unwrap_or(path);
+            maps.push(json!({
+                "file": name.display().to_string(),
+                "source": source,
+                "blake3": hash_of(path)?,
+            }));
         }
         let manifest = &exhibit.manifest;
         let path = fs::canonicalize(manifest).unwrap_or_else(|_| manifest.clone());
