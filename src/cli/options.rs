@@ -76,6 +76,7 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
         lamps,
         camera,
         compare,
+        enhance,
         language,
     } = overrides;
     let mut words = Vec::new();
@@ -101,6 +102,7 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
     }
     one("camera", camera.as_deref());
     one("compare", compare.as_deref());
+    one("enhance", enhance.as_deref());
     one("language", language.as_deref());
     words
 }

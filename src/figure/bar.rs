@@ -59,16 +59,16 @@ pub fn lay(
     face: Vec<u8>,
     taken: impl Fn(u32, u32) -> bool,
 ) -> Result<Bar, FigureError> {
-    register(face);
     let [width, height] = [print.width, print.height];
     let (mm, px) = length(scale, width).map_err(|error| FigureError::Picture(Box::new(error)))?;
+    register(face);
     let text_px = text_px.min(TEXT_OF_WIDTH * f64::from(width)).round();
     let ink = RGBColor(INK[0], INK[1], INK[2]);
     let style = TextStyle::from((FACE, text_px).into_font())
         .color(&ink)
         .pos(Pos::new(HPos::Left, VPos::Top));
     let mut lines = vec![format!("{mm} mm")];
-    lines.extend(Some(scale.words()).filter(|words| !words.is_empty()));
+    lines.extend(scale.words().into_iter().map(str::to_owned));
     let mut text_width = 0;
     for line in &lines {
         let (wide, _) = style.font.box_size(line).map_err(fault)?;

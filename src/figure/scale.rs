@@ -58,17 +58,14 @@ impl Scale {
         }
     }
 
-    /// What a bar must say beside its length; empty where there is nothing to say.
-    pub fn words(&self) -> String {
+    /// What a bar must say beside its length, a line each; none where there is nothing to say.
+    pub fn words(&self) -> Vec<&'static str> {
         let holds = match self.holds {
-            Holds::Everywhere => "",
-            Holds::AlongTheHorizontal => "along the horizontal",
-            Holds::AtTheCentre => "at the centre, along the horizontal",
+            Holds::Everywhere => None,
+            Holds::AlongTheHorizontal => Some("along the horizontal"),
+            Holds::AtTheCentre => Some("at the centre, along the horizontal"),
         };
-        match (holds, self.outside_the_loupe) {
-            (holds, false) => holds.to_owned(),
-            ("", true) => "outside the loupe".to_owned(),
-            (holds, true) => format!("{holds}, outside the loupe"),
-        }
+        let loupe = self.outside_the_loupe.then_some("outside the loupe");
+        holds.into_iter().chain(loupe).collect()
     }
 }

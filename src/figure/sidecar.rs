@@ -9,7 +9,10 @@ use super::{FigureError, scale::Scale};
 use crate::{
     manifest::{
         Exhibit, Scene, SideName,
-        exhibit::{Ambient, Camera, Comparison, Exposure, LampColour, LampKind, Member, Surface},
+        exhibit::{
+            Ambient, Camera, Comparison, Enhancement, Exposure, LampColour, LampKind, Member,
+            Surface,
+        },
     },
     needs::Needs,
     optics::tier::Tier,
@@ -150,6 +153,9 @@ fn accuracy(exhibit: &Exhibit, scene: &Scene, tier: Tier, size: [u32; 2]) -> Val
     if !scene.overlays.is_empty() {
         remarks.push("overlays are left aside");
     }
+    if !scene.enhance.marks().is_empty() {
+        remarks.push("enhancement is left aside");
+    }
     if scene.compare.is_some() {
         remarks.push("predicted for the scene without its comparison");
     }
@@ -190,6 +196,7 @@ fn scene_as_json(exhibit: &Exhibit, scene: &Scene) -> Value {
         lamps,
         ambient,
         exposure,
+        enhance,
         language,
     } = scene;
     let sheet = &exhibit.drawings[*drawing];
@@ -206,6 +213,12 @@ fn scene_as_json(exhibit: &Exhibit, scene: &Scene) -> Value {
         level,
         white,
     } = exposure;
+    let Enhancement {
+        relief_only,
+        exaggerate,
+        stretch,
+        sharpen,
+    } = enhance;
     json!({
         "id": id,
         "title": title.0,
@@ -220,6 +233,12 @@ fn scene_as_json(exhibit: &Exhibit, scene: &Scene) -> Value {
         "lamps": lamps.collect::<Vec<_>>(),
         "ambient": { "lux": illuminance, "kelvin": kelvin },
         "exposure": { "lux": exposed, "level": level, "white_kelvin": white },
+        "enhance": {
+            "relief_only": relief_only,
+            "exaggerate": exaggerate,
+            "stretch": stretch.map(|stretch| stretch.to_array()),
+            "sharpen": sharpen,
+        },
         "language": language,
     })
 }
@@ -251,6 +270,9 @@ fn comparison_as_json(exhibit: &Exhibit, scene: &Scene, comparison: &Comparison)
         radius,
         magnify,
         full_delta_e,
+        full_luminance,
+        coded: _,
+        turn: _,
     } = comparison;
     let sheet = exhibit.drawing_of(scene);
     let member = |member: &Member| match member {
@@ -269,6 +291,7 @@ fn comparison_as_json(exhibit: &Exhibit, scene: &Scene, comparison: &Comparison)
         "radius": radius,
         "magnify": magnify,
         "full_delta_e": full_delta_e,
+        "full_luminance": full_luminance,
     })
 }
 

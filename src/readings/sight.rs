@@ -19,10 +19,10 @@ const GRAZING: f64 = 1e-12;
 
 /// How a scene's sheet is seen in a picture of some size.
 pub struct Sight {
-    eye: Eye,
     size: DVec2,
     surface: SideSurface,
-    part: Part,
+    /// Those parts of the picture that show the side.
+    parts: Vec<(Eye, Part)>,
 }
 
 /// A place that is seen.
@@ -35,19 +35,15 @@ pub struct Seen {
 }
 
 impl Sight {
-    /// Of `scene` in a picture of `size` pixels; of a comparison, of its first member.
+    /// Of `scene` in a picture of `size` pixels; of a comparison, of the members that show the same
+    /// side of the same drawing, whatever their state.
     ///
     /// # Errors
     /// Of the sheet's shape, where it comes from a file.
     pub fn new(exhibit: &Exhibit, scene: &Scene, size: [u32; 2]) -> Result<Self, ReadingError> {
         let size = DVec2::from(size.map(|side| f64::from(side.max(1))));
         let aspect = size.x / size.y;
-        let (scene, part) = exhibit
-            .parts(scene, aspect)
-            .into_iter()
-            .next()
-            .unwrap_or_else(|| (scene.clone(), Part::WHOLE));
-        let drawing = exhibit.drawing_of(&scene);
+        let drawing = exhibit.drawing_of(scene);
         let size_mm = drawing.size_mm;
         let path = match &drawing.surface {
             Surface::Height(map) => map.file.path.clone(),
@@ -60,12 +56,18 @@ impl Sight {
             SideName::Recto => recto,
             SideName::Verso => recto.other_side(size_mm, drawing.flip),
         };
-        let camera = scene.camera.fitted(size_mm, part.aspect(aspect));
+        let parts = exhibit
+            .parts(scene, aspect)
+            .into_iter()
+            .filter(|(member, _)| (member.drawing, member.side) == (scene.drawing, scene.side))
+            .map(|(member, part)| {
+                let camera = member.camera.fitted(size_mm, part.aspect(aspect));
+                (Eye::new(&camera, size_mm), part)
+            });
         Ok(Self {
-            eye: Eye::new(&camera, size_mm),
             size,
             surface,
-            part,
+            parts: parts.collect(),
         })
     }
 
@@ -86,9 +88,13 @@ impl Sight {
             2.0 * pixel.x / self.size.x - 1.0,
             1.0 - 2.0 * pixel.y / self.size.y,
         );
-        let own = (ndc - self.part.shift) / self.part.scale;
-        let aspect = self.part.aspect(self.size.x / self.size.y);
-        let (origin, direction) = self.eye.ray(own, aspect);
+        let aspect = self.size.x / self.size.y;
+        let (eye, part) = self
+            .parts
+            .iter()
+            .find(|(_, part)| part.shows(ndc, aspect))?;
+        let own = (ndc - part.shift) / part.scale;
+        let (origin, direction) = eye.ray(own, part.aspect(aspect));
         let surface = &self.surface;
         let mut nearest: Option<(f64, DVec2)> = None;
         for triangle in surface.indices.chunks_exact(3) {
@@ -121,4 +127,21 @@ fn meets(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<(f64,
     // Neighbours share an edge, which rounding must not open.
     let edge = -1e-9;
     (t > 0.0 && u >= edge && v >= edge && u + v <= 1.0 - edge).then_some((t, [u, v]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ray_meets_a_triangle_from_either_side_and_not_beside_it() {
+        let corners = [DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0];
+        let from = |x: f64, y: f64| meets(DVec3::new(x, y, 3.0), DVec3::NEG_Z, corners);
+        assert_eq!(from(0.5, 0.25), Some((3.0, [0.25, 0.125])));
+        assert!(meets(DVec3::new(0.5, 0.25, -3.0), DVec3::Z, corners).is_some());
+        assert!(from(1.5, 1.0).is_none() && from(-0.1, 0.5).is_none());
+        // Away from it, and along it.
+        assert!(meets(DVec3::new(0.5, 0.25, 3.0), DVec3::Z, corners).is_none());
+        assert!(meets(DVec3::new(-1.0, 0.5, 0.0), DVec3::X, corners).is_none());
+    }
 }

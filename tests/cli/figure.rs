@@ -6,7 +6,6 @@ use std::{
     process::Output,
 };
 
-use recto::maps::encode;
 use serde_json::Value;
 
 use super::{Sheet, code, files, recto, stdout};
@@ -235,7 +234,6 @@ fn nothing_is_overwritten_or_half_written() {
     assert!(fs::read(&out).unwrap() == first);
     assert_ne!(sidecar(&out)["exhibit"]["blake3"], before);
     assert_eq!(files(sheet.root.path()), ["exhibit", "x.json", "x.png"]);
-    encode::save_png_grey8(&sheet.exhibit().join("sheet.png"), 16, 16, &[9; 256], None).unwrap();
     fs::write(sheet.exhibit().join("sheet.png"), "no picture").unwrap();
     code(&figure(&sheet, &out, &[]), 1);
     assert!(fs::read(&out).unwrap() == first);

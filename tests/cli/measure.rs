@@ -234,8 +234,8 @@ fn tools_read_what_was_drawn() {
     assert!(sigma < 25.0, "{sigma}");
 
     let profile = read(&Tool::Profile([
-        DVec2::new(2.0, 7.0),
-        DVec2::new(38.0, 7.0),
+        DVec2::new(1.0, 7.0),
+        DVec2::new(37.0, 7.0),
     ]));
     for (quantity, truth) in [
         ("length", 36.0),
@@ -247,7 +247,7 @@ fn tools_read_what_was_drawn() {
             (found - truth).abs() <= SIGMAS * sigma,
             "{quantity} {found} ± {sigma}"
         );
-        assert!(sigma < 0.02 * truth, "{quantity} {sigma}");
+        assert!(sigma < 0.05 * truth, "{quantity} {sigma}");
     }
     let samples = &profile.samples;
     assert!(samples.len() > 36 * 23, "{}", samples.len());
@@ -256,7 +256,7 @@ fn tools_read_what_was_drawn() {
         (0.0, 36.0)
     );
     for sample in samples {
-        let truth = 20.0 * (TAU * (2.0 + sample.s_mm) / 4.0).sin();
+        let truth = 20.0 * (TAU * (1.0 + sample.s_mm) / 4.0).sin();
         assert!((sample.z_um - truth).abs() < 0.1, "{sample:?}");
     }
 
@@ -272,7 +272,7 @@ fn tools_read_what_was_drawn() {
 
     let disc = |x: f64, y: f64| Disc {
         middle: DVec2::new(x, y),
-        radius_mm: 0.1,
+        radius_mm: 0.06,
     };
     let ink = read(&Tool::Difference([disc(20.0, 15.0), disc(10.0, 5.0)]));
     let [difference, sigma] = value(&ink, "ΔE00");
