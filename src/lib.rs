@@ -14,7 +14,10 @@
 //! | [`sheet`] | the sheet in Bevy: mesh, the one material, the only narrowing from f64 to f32 |
 //! | [`stage`] | what is shown: loading, sides, camera, legend, reload on save |
 //! | [`visitor`] | the window: hand, lamp, keys, caption |
+//! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
+//! | [`figure`] | a print that can be made again: its scale bar and its sidecar |
+//! | [`lettering`] | the letters of plots and scale bars |
 //! | [`device`] | whether there is a graphics device |
 //! | [`compute`] | the shipped physics on the graphics device, without a picture |
 //! | [`tradeoff`] | how far each tier is from the judge, and which one serves a scene |
@@ -24,8 +27,8 @@
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
 //! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
-//! `colour`, `maps`, `measure`, `manifest`, `needs`, `optics`, `reference`, `tradeoff` and `sample` never name
-//! Bevy; `tests/layers.rs` holds the table of who may import whom.
+//! `colour`, `maps`, `measure`, `readings`, `figure`, `manifest`, `needs`, `optics`, `reference`,
+//! `tradeoff` and `sample` never name Bevy; `tests/layers.rs` holds the table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes
 //! [`stage::Shown`], then the stage is arranged from it.
@@ -37,11 +40,14 @@ pub mod compute;
 pub mod cost;
 pub mod develop;
 pub mod device;
+pub mod figure;
+pub mod lettering;
 pub mod manifest;
 pub mod maps;
 pub mod measure;
 pub mod needs;
 pub mod optics;
+pub mod readings;
 pub mod reference;
 pub mod sample;
 pub mod sheet;

@@ -4,8 +4,12 @@
 mod bsdf;
 #[path = "cli/commands.rs"]
 mod commands;
+#[path = "cli/figure.rs"]
+mod figure;
 #[path = "cli/masks.rs"]
 mod masks;
+#[path = "cli/measure.rs"]
+mod measure;
 #[path = "cli/missing.rs"]
 mod missing;
 #[path = "cli/reference.rs"]

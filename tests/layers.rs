@@ -8,15 +8,21 @@ use std::{
 
 /// Each module with the modules, or paths within them, that it may name. `bevy` stands for every
 /// crate of Bevy's. The crate's root and `cli` may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 19] = [
+const MAY_IMPORT: [(&str, &[&str]); 22] = [
     ("units", &[]),
     ("colour", &[]),
     ("optics", &["units", "colour"]),
     ("maps", &["units", "colour"]),
     ("measure", &["units", "colour"]),
+    ("lettering", &[]),
     // Headers of pictures are checked at validation.
     ("manifest", &["units", "colour", "optics", "maps"]),
     ("needs", &["manifest", "optics", "maps"]),
+    // What is measured lies on a side of an exhibit, in its maps.
+    (
+        "readings",
+        &["manifest", "maps", "measure", "colour", "lettering"],
+    ),
     // No tier: the judge shares constants, Fresnel and the facets' distribution only. Its pictures
     // are of the same exhibit, scene and lamps.
     (
@@ -47,9 +53,24 @@ const MAY_IMPORT: [(&str, &[&str]); 19] = [
             "maps",
             "manifest",
             "needs",
+            "lettering",
         ],
     ),
     ("develop", &["colour"]),
+    // A print that can be made again: its scale bar, and what it was made from.
+    (
+        "figure",
+        &[
+            "colour",
+            "develop",
+            "lettering",
+            "manifest",
+            "measure",
+            "needs",
+            "optics::tier",
+            "tradeoff",
+        ],
+    ),
     ("sheet", &["bevy", "needs", "manifest", "maps", "optics"]),
     (
         "stage",

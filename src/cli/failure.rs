@@ -5,6 +5,7 @@ use std::{error::Error, io, process::ExitCode};
 use super::output;
 use crate::{
     device::NoDevice,
+    figure::FigureError,
     manifest::{CreateError, Faults},
     maps::MapError,
     sample::SampleError,
@@ -87,6 +88,12 @@ impl From<Faults> for Failure {
 
 impl From<MapError> for Failure {
     fn from(error: MapError) -> Self {
+        Self::Input(Box::new(error))
+    }
+}
+
+impl From<FigureError> for Failure {
+    fn from(error: FigureError) -> Self {
         Self::Input(Box::new(error))
     }
 }

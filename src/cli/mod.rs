@@ -6,6 +6,7 @@ mod bsdf;
 mod check;
 mod failure;
 mod later;
+mod measure;
 mod new;
 mod options;
 mod output;
@@ -55,6 +56,8 @@ enum Command {
     Bsdf(bsdf::Arguments),
     /// Judge every tier: its error against the reference, and what it costs
     Tradeoff(tradeoff::Arguments),
+    /// Measure on a side: distances, areas, relief, laid lines, strokes, colours
+    Measure(measure::Arguments),
     /// Propose control points from the pictures themselves
     Register(register::Arguments),
     /// Start an exhibit from one picture
@@ -80,6 +83,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Check(arguments) => check::run(&arguments),
         Command::Bsdf(arguments) => bsdf::run(&arguments),
         Command::Tradeoff(arguments) => tradeoff::run(&arguments),
+        Command::Measure(arguments) => measure::run(arguments),
         Command::Register(arguments) => register::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),

@@ -69,6 +69,48 @@ impl SceneArguments {
     }
 }
 
+/// The words that say these overrides on the command line.
+pub fn written(overrides: &Overrides) -> Vec<String> {
+    let Overrides {
+        scene,
+        drawing,
+        side,
+        state,
+        overlays,
+        lamps,
+        camera,
+        compare,
+        enhance,
+        language,
+    } = overrides;
+    let mut words = Vec::new();
+    let mut say = |name: &str, value: &str| match value.starts_with('-') {
+        // Two words would be taken for two options.
+        true => words.push(format!("--{name}={value}")),
+        false => words.extend([format!("--{name}"), value.to_owned()]),
+    };
+    let mut one = |name: &str, value: Option<&str>| {
+        if let Some(value) = value {
+            say(name, value);
+        }
+    };
+    one("scene", scene.as_deref());
+    one("drawing", drawing.as_deref());
+    one("side", side.map(SideName::word));
+    one("state", state.as_deref());
+    for overlay in overlays {
+        one("overlay", Some(overlay));
+    }
+    for lamp in lamps {
+        one("lamp", Some(lamp));
+    }
+    one("camera", camera.as_deref());
+    one("compare", compare.as_deref());
+    one("enhance", enhance.as_deref());
+    one("language", language.as_deref());
+    words
+}
+
 pub fn side() -> impl TypedValueParser<Value = SideName> {
     const SIDES: [SideName; 2] = [SideName::Recto, SideName::Verso];
     PossibleValuesParser::new(SIDES.map(SideName::word)).try_map(|word| {

@@ -1,6 +1,7 @@
 //! `recto render`
 
 use std::{
+    fs,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -13,12 +14,13 @@ use super::{
 use crate::{
     develop::{self, Print},
     device,
+    figure::{self, bar, sidecar::Facts},
     manifest::{Exhibit, Faults, Scene, overrides::Overrides},
-    maps::encode,
+    maps::{MapError, encode},
     needs::{MapUse, Needs},
     optics::tier::Tier,
     shot::{Darkroom, Picture, ShotError},
-    stage::Shown,
+    stage::{Shown, legend},
 };
 
 /// Samples along the steepest direction of a map that is seen at an angle. Straight above, more
@@ -55,6 +57,10 @@ pub struct Arguments {
     /// How exactly light is calculated
     #[arg(long, default_value_t, value_parser = options::tier())]
     tier: Tier,
+    /// A figure that can be made again: a scale bar on the .png, and beside each picture a .json that
+    /// says what it was made from, how large and how exactly, and by which command
+    #[arg(long)]
+    figure: bool,
 }
 
 /// What the pictures are written as.
@@ -73,6 +79,15 @@ pub struct Commission {
     pub size: [u32; 2],
     pub out: PathBuf,
     format: Format,
+    /// As given: what makes each picture again.
+    path: PathBuf,
+    overrides: Overrides,
+}
+
+/// What every picture of a figure needs.
+struct Figures {
+    facts: Vec<Facts>,
+    face: Vec<u8>,
 }
 
 impl Format {
@@ -95,8 +110,10 @@ impl Pictures {
     pub fn commission(self, tier: Tier, verify_maps: bool) -> Result<Commission, Failure> {
         let (all, size, out) = (self.all_scenes, self.size, self.out);
         let format = if all { Format::Png } else { Format::of(&out)? };
-        let exhibit = super::read(&self.exhibit)?;
-        let (exhibit, scenes) = scenes(exhibit, self.scene.overrides(), all, size)?;
+        let path = self.exhibit;
+        let exhibit = super::read(&path)?;
+        let overrides = self.scene.overrides();
+        let (exhibit, scenes) = scenes(exhibit, overrides.clone(), all, size)?;
         if all || verify_maps {
             // A damaged map of the last scene must be found before the first is written.
             verify(&exhibit, &scenes, tier)?;
@@ -116,6 +133,8 @@ impl Pictures {
             size,
             out,
             format,
+            path,
+            overrides,
         })
     }
 }
@@ -123,9 +142,8 @@ impl Pictures {
 impl Commission {
     /// Writes the picture of one scene into its file, and names it.
     pub fn deliver(&self, scene: &Scene, picture: &Picture) -> Result<(), Failure> {
-        let (width, height) = (picture.width, picture.height);
         match self.format {
-            Format::Exr => encode::save_exr_rgb(&self.out, width, height, &picture.pixels)?,
+            Format::Exr => save_exr(&self.out, picture)?,
             Format::Png => save(&self.out, &developed(scene, picture))?,
         }
         output::result(self.out.display())
@@ -154,31 +172,137 @@ impl Commission {
         }
         Ok(())
     }
+
+    /// Gathers what figures of all scenes need, before any is rendered.
+    fn figures(&self, tier: Tier) -> Result<Figures, Failure> {
+        let too_small = |(side, least): (&u32, &u32)| side < least;
+        if matches!(self.format, Format::Png) && self.size.iter().zip(&bar::LEAST_PX).any(too_small)
+        {
+            let [width, height] = bar::LEAST_PX;
+            return Err(Failure::Usage(format!(
+                "--figure: a scale bar with its words needs a picture of {width}x{height} pixels or more"
+            )));
+        }
+        let mut facts = Vec::new();
+        for scene in &self.scenes {
+            let out = if self.all {
+                self.file(&scene.id)
+            } else {
+                self.out.clone()
+            };
+            figure::is_free(&out)?;
+            let arguments = self.again(scene, tier, &out);
+            let found = Facts::new(&self.exhibit, scene, tier, self.size, arguments)?;
+            bar::length(&found.scale, self.size[0])
+                .map_err(|error| Failure::Input(Box::new(error)))?;
+            facts.push(found);
+        }
+        Ok(Figures {
+            facts,
+            face: legend::face(),
+        })
+    }
+
+    /// What the program is called with to make the picture of one scene again, beside its name only.
+    fn again(&self, scene: &Scene, tier: Tier, out: &Path) -> Vec<String> {
+        let path = fs::canonicalize(&self.path).unwrap_or_else(|_| self.path.clone());
+        let mut overrides = self.overrides.clone();
+        if self.all {
+            overrides.scene = Some(scene.id.clone());
+        }
+        let name = out.file_name().unwrap_or_default().to_string_lossy();
+        let [width, height] = self.size;
+        let mut words = vec!["render".to_owned(), path.display().to_string()];
+        words.extend(options::written(&overrides));
+        let size = format!("{width}x{height}");
+        let rest = ["--size", &size, "--tier", tier.name(), "--figure", "--out"];
+        words.extend(rest.map(str::to_owned));
+        // A name that begins with a hyphen would be taken for an option.
+        words.push(match name.starts_with('-') {
+            true => format!("./{name}"),
+            false => name.into_owned(),
+        });
+        words
+    }
+
+    /// Writes a picture of scene `k` with its sidecar; gives its print, where it is one.
+    fn deliver_figure(
+        &self,
+        k: usize,
+        picture: &Picture,
+        figures: &Figures,
+        out: &Path,
+    ) -> Result<Option<Print>, Failure> {
+        let facts = &figures.facts[k];
+        let name = out.file_name().unwrap_or_default().to_string_lossy();
+        let describe = |bytes: &[u8], bar| facts.of_picture(&name, bytes, bar);
+        match self.format {
+            Format::Exr => {
+                let write = |path: &Path| save_exr(path, picture);
+                figure::save(out, write, |bytes| describe(bytes, None))?;
+                Ok(None)
+            }
+            Format::Png => {
+                let mut print = developed(&self.scenes[k], picture);
+                let width = picture.width;
+                let taken = |x: u32, y: u32| {
+                    let at = y as usize * width as usize + x as usize;
+                    picture.legend.get(at).is_some_and(|pixel| pixel[3] > 0.0)
+                };
+                let text_px = f64::from(legend::text_size(picture.height as f32));
+                let face = figures.face.clone();
+                let bar = bar::lay(&mut print, &facts.scale, text_px, face, taken)?;
+                let write = |path: &Path| save(path, &print);
+                figure::save(out, write, |bytes| describe(bytes, Some((bar.mm, bar.px))))?;
+                Ok(Some(print))
+            }
+        }
+    }
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let tier = arguments.tier;
     let commission = arguments.pictures.commission(tier, false)?;
+    let figures = match arguments.figure {
+        true => {
+            // Maps that cannot be read are to be named as faults of the manifest.
+            verify(&commission.exhibit, &commission.scenes, tier)?;
+            Some(commission.figures(tier)?)
+        }
+        false => None,
+    };
     device::probe()?;
 
     let size = commission.size;
     let exhibit = Arc::new(commission.exhibit.clone());
     let shown = |scene: &Scene| Shown::at_rest(exhibit.clone(), scene.clone(), tier, aspect(size));
     if commission.all {
-        return render_all(&commission, shown);
+        return render_all(&commission, figures.as_ref(), shown);
     }
-    for scene in &commission.scenes {
+    for (k, scene) in commission.scenes.iter().enumerate() {
         let mut darkroom = Darkroom::new(samples(scene))?;
         let picture = darkroom
             .take(shown(scene), size)
             .map_err(|error| placed(&exhibit, error))?;
-        commission.deliver(scene, &picture)?;
+        match &figures {
+            Some(figures) => {
+                let out = &commission.out;
+                commission.deliver_figure(k, &picture, figures, out)?;
+                output::result(out.display())?;
+                output::result(figure::sidecar_of(out).display())?;
+            }
+            None => commission.deliver(scene, &picture)?,
+        }
     }
     Ok(())
 }
 
 /// Renders every scene into a file of its own, and all of them onto a contact sheet.
-fn render_all(commission: &Commission, shown: impl Fn(&Scene) -> Shown) -> Result<(), Failure> {
+fn render_all(
+    commission: &Commission,
+    figures: Option<&Figures>,
+    shown: impl Fn(&Scene) -> Shown,
+) -> Result<(), Failure> {
     output::make_folder(&commission.out)?;
     let scenes = &commission.scenes;
     let bar = output::progress(scenes.len() as u64);
@@ -196,7 +320,15 @@ fn render_all(commission: &Commission, shown: impl Fn(&Scene) -> Shown) -> Resul
                 none => none.insert(Darkroom::new(wanted)?),
             };
             let picture = darkroom.take(shown(scene), commission.size)?;
-            thumbnails.push((at, commission.deliver_one(scene, &picture)?));
+            let print = match figures {
+                Some(figures) => {
+                    let out = commission.file(&scene.id);
+                    let print = commission.deliver_figure(at, &picture, figures, &out)?;
+                    print.map(|print| print.reduced(THUMBNAIL_PX))
+                }
+                None => Some(commission.deliver_one(scene, &picture)?),
+            };
+            thumbnails.extend(print.map(|print| (at, print)));
             bar.inc(1);
         }
     }
@@ -285,15 +417,13 @@ fn developed(scene: &Scene, picture: &Picture) -> Print {
     Print::develop(*width, *height, pixels, legend, scene.exposure.level)
 }
 
-fn save(path: &Path, print: &Print) -> Result<(), Failure> {
+fn save(path: &Path, print: &Print) -> Result<(), MapError> {
     let (width, height) = (print.width, print.height);
-    Ok(encode::save_png_rgb8(
-        path,
-        width,
-        height,
-        &print.pixels,
-        None,
-    )?)
+    encode::save_png_rgb8(path, width, height, &print.pixels, None)
+}
+
+fn save_exr(path: &Path, picture: &Picture) -> Result<(), MapError> {
+    encode::save_exr_rgb(path, picture.width, picture.height, &picture.pixels)
 }
 
 /// Width over height.

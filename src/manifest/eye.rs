@@ -80,19 +80,25 @@ impl Eye {
         }
     }
 
-    /// The point of the plane z = 0 of the table seen at `ndc` (−1…1, y up) in a picture of
-    /// `aspect`; `None` where the eye looks past it.
-    pub fn table_point(&self, ndc: DVec2, aspect: f64) -> Option<DVec3> {
+    /// The line of sight through `ndc` (−1…1, y up) in a picture of `aspect`: a place that lies
+    /// before everything that is seen, and the direction away from the eye, of any length.
+    pub fn ray(&self, ndc: DVec2, aspect: f64) -> (DVec3, DVec3) {
         let offset =
             self.right * (ndc.x * self.half_width) + self.up * (ndc.y * self.half_width / aspect);
         let on_plane = self.centre + offset;
-        let (origin, direction) = match self.distance {
+        match self.distance {
             Some(distance) => {
                 let eye = self.centre + self.towards * distance;
                 (eye, on_plane - eye)
             }
             None => (on_plane + self.towards * PARALLEL_DEPTH_MM, -self.towards),
-        };
+        }
+    }
+
+    /// The point of the plane z = 0 of the table seen at `ndc` (−1…1, y up) in a picture of
+    /// `aspect`; `None` where the eye looks past it.
+    pub fn table_point(&self, ndc: DVec2, aspect: f64) -> Option<DVec3> {
+        let (origin, direction) = self.ray(ndc, aspect);
         let t = -origin.z / direction.z;
         (t.is_finite() && t > 0.0).then(|| origin + direction * t)
     }

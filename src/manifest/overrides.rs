@@ -20,7 +20,7 @@ use crate::units::Degrees;
 use spec::{decode, fault, parts, table, validated, value};
 
 /// The word for the sheet as its sides describe it.
-const NO_STATE: &str = "none";
+pub const NO_STATE: &str = "none";
 const CAMERA: &str = "--camera";
 /// Begins a camera that shows the sheet in its true size; the display's resolution follows.
 const TRUE_SIZE: &str = "true-size@";

@@ -105,6 +105,23 @@ pub fn polyline(line: &[DVec2], accuracy: Accuracy) -> Result<Measured, MeasureE
     Measured::new(length, sigma)
 }
 
+/// Length in mm of the closed line through 3 to [`MAX_PLACES`] − 1 corners, in their order. Every
+/// corner moves two of its sides, as in [`polyline`].
+///
+/// # Errors
+/// As [`polyline`].
+pub fn perimeter(outline: &[DVec2], accuracy: Accuracy) -> Result<Measured, MeasureError> {
+    places(outline, 3, MAX_PLACES - 1)?;
+    let sigma = accuracy.place_mm()?;
+    let n = outline.len();
+    let sides = (0..n)
+        .map(|i| arm(outline[i], outline[(i + 1) % n], 0.0, [i, (i + 1) % n]))
+        .collect::<Result<Vec<_>, _>>()?;
+    let squares = (0..n).map(|i| (sides[i].unit - sides[(i + 1) % n].unit).length_squared());
+    let sigma = sigma * squares.sum::<f64>().sqrt();
+    Measured::new(sides.iter().map(|side| side.length).sum(), sigma)
+}
+
 /// Area in mm² within an outline of 3 to [`MAX_PLACES`] corners, in either sense of turning. By
 /// the shoelace formula A = ½ Σ (xᵢ yᵢ₊₁ − xᵢ₊₁ yᵢ) the derivative by corner i is half the
 /// vector between its neighbours, turned by 90°: σ_A = σ/2 √Σ |pᵢ₊₁ − pᵢ₋₁|².
@@ -317,7 +334,7 @@ mod tests {
     #[test]
     fn two_sigma_cover_95_percent() {
         let places = shapes();
-        let all: [(&str, f64); 4] = [
+        let all: [(&str, f64); 5] = [
             (
                 "ruler",
                 coverage(&places[..2], 1.0, |p| ruler(p[0], p[1], ACCURACY)),
@@ -325,6 +342,10 @@ mod tests {
             (
                 "polyline",
                 coverage(&places, 1.0, |p| polyline(p, ACCURACY)),
+            ),
+            (
+                "perimeter",
+                coverage(&places, 1.0, |p| perimeter(p, ACCURACY)),
             ),
             ("area", coverage(&places, 1.0, |p| area(p, ACCURACY))),
             (

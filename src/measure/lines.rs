@@ -56,6 +56,8 @@ pub struct Lines {
     /// Direction the lines run in, in degrees from the side's x axis towards its y axis (so
     /// clockwise as seen), in −90 < d ≤ 90.
     pub direction_deg: f64,
+    /// Standard uncertainty of the direction, in degrees.
+    pub direction_sigma_deg: f64,
     /// Significance in standard deviations of the noise; at least [`SIGNIFICANT`],
     /// of chain lines [`CHAIN_SIGNIFICANT`].
     pub significance: f64,
@@ -154,6 +156,10 @@ fn laid(raster: &Raster) -> Result<Lines, NoLines> {
         spacing_mm,
         sigma_mm,
         direction_deg: along(f),
+        direction_sigma_deg: (f.perp().normalize_or_zero() * sigma)
+            .length()
+            .atan2(f.length())
+            .to_degrees(),
         significance: peak.z,
     })
 }
@@ -203,6 +209,8 @@ fn chain(raster: &Raster, laid_deg: f64) -> Result<Lines, NoLines> {
         spacing_mm: found.spacing_mm,
         sigma_mm: found.sigma_mm,
         direction_deg: along(normal),
+        // Of the directions that were tried one is the best: uniform over a step.
+        direction_sigma_deg: (step / 12f64.sqrt()).to_degrees(),
         significance: found.z,
     })
 }

@@ -96,7 +96,9 @@ pub enum MeasureError {
     #[error("{0} strokes here; choose a section across one of them")]
     SeveralStrokes(usize),
     /// The stroke leaves no paper beside it to compare with.
-    #[error("the stroke reaches the end of the section; choose a longer one")]
+    #[error(
+        "no even paper at both ends of the section; lay it from bare paper to bare paper, and longer"
+    )]
     NoPaper,
     /// The stroke runs too much along the section.
     #[error("the stroke runs {found_deg:.0}° off square to the section; turn the section by that")]

@@ -1,39 +1,26 @@
 //! Error against cost, as a picture: every tier, the Pareto front, the reference's own noise.
 
-use std::{error::Error, sync::Once};
-
 use plotters::{
     coord::Shift,
     prelude::*,
-    style::{
-        FontStyle, register_font,
-        text_anchor::{HPos, Pos, VPos},
-    },
+    style::text_anchor::{HPos, Pos, VPos},
 };
 
 use super::{choice::LADDER, table::Table};
-use crate::optics::tier::Tier;
+pub use crate::lettering::PlotError;
+use crate::{
+    lettering::{FAINT, INK, fault, register, text},
+    optics::tier::Tier,
+};
 
 /// Width and height of the picture in pixels.
 pub const SIZE: [u32; 2] = [1280, 860];
-const INK: RGBColor = RGBColor(32, 32, 36);
-const FAINT: RGBColor = RGBColor(150, 150, 156);
 const LADDER_COLOUR: RGBColor = RGBColor(0, 92, 168);
 const BASELINE_COLOUR: RGBColor = RGBColor(176, 96, 16);
 const FRONT_COLOUR: RGBColor = RGBColor(196, 30, 58);
-const FACE: &str = "sans-serif";
 const LABEL_PX: f64 = 19.0;
 /// Width of a letter over its height, for labels that keep clear of each other.
 const LETTER: f64 = 0.56;
-
-/// Why there is no picture.
-#[derive(Debug, thiserror::Error)]
-#[error("the plot cannot be drawn: {0}")]
-pub struct PlotError(String);
-
-fn fault(error: impl Error) -> PlotError {
-    PlotError(error.to_string())
-}
 
 /// A tier over all subjects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,16 +73,6 @@ pub fn front(points: &[Point]) -> Vec<Point> {
     front
 }
 
-/// The face of all texts, once for the whole program: the library keeps it for ever.
-fn register(face: Vec<u8>) {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let face: &'static [u8] = Box::leak(face.into_boxed_slice());
-        // A face that does not parse is missed by the first text, which says so.
-        let _ = register_font(FACE, FontStyle::Normal, face);
-    });
-}
-
 /// Draws `table` with the letters of `face`, a TrueType file: rows of RGB pixels of [`SIZE`].
 ///
 /// # Errors
@@ -126,10 +103,6 @@ pub fn svg(table: &Table, face: Vec<u8>) -> Result<String, PlotError> {
         area.present().map_err(fault)?;
     }
     Ok(text)
-}
-
-fn text(px: f64, colour: &'static RGBColor) -> TextStyle<'static> {
-    TextStyle::from((FACE, px).into_font()).color(colour)
 }
 
 /// Powers of ten times these are marked where an axis spans a decade or less, and where it spans
