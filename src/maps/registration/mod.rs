@@ -8,6 +8,7 @@
 
 mod correlate;
 pub mod plate;
+mod prepared;
 pub mod propose;
 
 use glam::{DAffine2, DMat2, DVec2};
