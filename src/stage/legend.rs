@@ -5,8 +5,8 @@ use bevy::prelude::*;
 use super::{Shown, StageSet};
 use crate::{
     colour,
-    manifest::exhibit::{CompareMode, Overlay, OverlayKind, Wording},
-    maps::ColourMapName,
+    manifest::exhibit::{BandMix, CompareMode, Overlay, OverlayKind, Wording},
+    maps::{ColourMapName, DIVERGING},
 };
 
 /// Where a face that has more than ASCII usually lies; the first found is used.
@@ -89,13 +89,7 @@ fn draw(
         commands.entity(entity).despawn();
     }
     let drawing = &shown.exhibit.drawings[shown.scene.drawing];
-    let overlays: Vec<(&Overlay, f64)> = shown
-        .scene
-        .overlays
-        .iter()
-        .filter(|(_, opacity)| *opacity > 0.0)
-        .map(|(index, opacity)| (&drawing.overlays[*index], *opacity))
-        .collect();
+    let overlays: Vec<(Overlay, f64)> = shown.scene.laid(drawing);
     let difference = shown
         .scene
         .compare
@@ -137,7 +131,7 @@ fn draw(
                 };
                 words.scale(rows, DIFFERENCE_COLOURS, "0".to_owned(), top);
             }
-            for (overlay, opacity) in overlays {
+            for (overlay, opacity) in &overlays {
                 rows.spawn(words.line(format!(
                     "{} · {:.0} %",
                     words.say(&overlay.title, &overlay.id),
@@ -160,6 +154,12 @@ fn draw(
                     } => {
                         let top = format!("{} {unit}", range[1]);
                         words.scale(rows, *colour_map, range[0].to_string(), top);
+                    }
+                    OverlayKind::Bands(view) => {
+                        rows.spawn(words.line(view.words()));
+                        if let BandMix::Difference { full } = view.mix {
+                            words.scale(rows, DIVERGING, format!("−{full}"), format!("+{full}"));
+                        }
                     }
                     OverlayKind::Picture(_) => {}
                 }
