@@ -8,6 +8,8 @@ mod commands;
 mod masks;
 #[path = "cli/missing.rs"]
 mod missing;
+#[path = "cli/probe.rs"]
+mod probe;
 #[path = "cli/reference.rs"]
 mod reference;
 #[path = "cli/register.rs"]

@@ -9,6 +9,7 @@ mod later;
 mod new;
 mod options;
 mod output;
+mod probe;
 mod reference;
 mod register;
 mod render;
@@ -57,6 +58,8 @@ enum Command {
     Tradeoff(tradeoff::Arguments),
     /// Propose control points from the pictures themselves
     Register(register::Arguments),
+    /// Say what overlays and stacks of bands show at one place
+    Probe(probe::Arguments),
     /// Start an exhibit from one picture
     New(new::Arguments),
     /// Write the sample exhibits and their maps
@@ -81,6 +84,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Bsdf(arguments) => bsdf::run(&arguments),
         Command::Tradeoff(arguments) => tradeoff::run(&arguments),
         Command::Register(arguments) => register::run(&arguments),
+        Command::Probe(arguments) => probe::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
