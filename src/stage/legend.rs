@@ -88,8 +88,7 @@ fn draw(
     for entity in &drawn {
         commands.entity(entity).despawn();
     }
-    let drawing = &shown.exhibit.drawings[shown.scene.drawing];
-    let overlays: Vec<(Overlay, f64)> = shown.scene.laid(drawing);
+    let overlays = overlays(&shown);
     let difference = shown
         .scene
         .compare
@@ -165,6 +164,26 @@ fn draw(
                 }
             }
         });
+}
+
+/// What lies on the sheet, or on the members of a comparison, each overlay once.
+fn overlays(shown: &Shown) -> Vec<(Overlay, f64)> {
+    let exhibit = &shown.exhibit;
+    let mut all: Vec<(Overlay, f64)> = Vec::new();
+    let members = exhibit.members(&shown.scene);
+    let scenes = if members.is_empty() {
+        vec![shown.scene.clone()]
+    } else {
+        members
+    };
+    for scene in &scenes {
+        for (overlay, opacity) in scene.laid(exhibit.drawing_of(scene)) {
+            if !all.iter().any(|(known, _)| *known == overlay) {
+                all.push((overlay, opacity));
+            }
+        }
+    }
+    all
 }
 
 /// Bundles of one legend.

@@ -197,10 +197,11 @@ fn bands_of_a_stack_are_seen_as_the_scene_says() {
         close(found, expected) && found[2] > found[0],
         "{found:?} {expected:?}"
     );
-    // Against each other, as members of a comparison.
+    // Against each other, as members of a comparison, whose legend names them.
     let halves = shoot("halves");
     assert!(close(pixel(&halves, 8, 32), [dark; 3]));
     assert!(close(pixel(&halves, 56, 32), [light; 3]));
+    assert!(!halves.legend.is_empty());
 }
 
 const TEAR: [u8; 3] = [0xd5, 0x5e, 0x00];
