@@ -10,8 +10,8 @@ use glam::DVec2;
 
 use crate::{
     manifest::exhibit::{
-        ColourMap, Drawing, Exhibit, HeightMap, LampKind, MapFile, NormalMap, Overlay, OverlayKind,
-        RoughnessMap, Scene, Side, SideName, Surface,
+        ColourMap, Drawing, Exhibit, HeightMap, LampKind, LegendEntry, MapFile, NormalMap, Overlay,
+        OverlayKind, RoughnessMap, Scene, Side, SideName, Surface,
     },
     maps::{self, MapError, MatterPart, MatterSlot, Pyramid},
     optics::{matter::SideMedia, tier::Tier},
@@ -147,14 +147,14 @@ impl MapUse {
     /// # Errors
     /// Where the file cannot be read, or is not what it is read for.
     pub fn load(&self) -> Result<Pyramid, MapError> {
-        let path = &self.file().path;
+        let file = self.file();
         match self {
-            Self::Albedo(map) | Self::OtherAlbedo(map) => maps::load_colour(path, map.encoding),
-            Self::Normal(map) => maps::load_normal(path, map.y),
+            Self::Albedo(map) | Self::OtherAlbedo(map) => maps::load_colour(file, map.encoding),
+            Self::Normal(map) => maps::load_normal(file, map.y),
             Self::NormalFromHeight(map, extent_mm) => {
-                maps::load_normal_from_height(path, map.range_um, *extent_mm)
+                maps::load_normal_from_height(file, map.range_um, *extent_mm)
             }
-            Self::Roughness(map) => maps::load_roughness(path, map.gloss),
+            Self::Roughness(map) => maps::load_roughness(file, map.gloss),
             Self::RoughnessOfMatter(stack, paper) => {
                 maps::load_roughness_of_matter(&stack.layers, *paper)
             }
@@ -162,18 +162,9 @@ impl MapUse {
                 maps::load_matter(&stack.layers, MatterPart::First)
             }
             Self::MatterMore(stack) => maps::load_matter(&stack.layers, MatterPart::More),
-            Self::Outline(_) => maps::load_outline(path),
-            Self::Transmission(_) | Self::Height(_) => maps::load_height(path),
-            Self::Overlay(overlay) => match &overlay.kind {
-                OverlayKind::Categorical(legend) => {
-                    let colours: Vec<[u8; 3]> = legend.iter().map(|entry| entry.colour).collect();
-                    maps::load_overlay_categorical(path, &colours).map(|map| map.pyramid)
-                }
-                OverlayKind::Continuous { colour_map, .. } => {
-                    maps::load_overlay_continuous(path, *colour_map)
-                }
-                OverlayKind::Picture(encoding) => maps::load_overlay_picture(path, *encoding),
-            },
+            Self::Outline(_) => maps::load_outline(&file.path),
+            Self::Transmission(_) | Self::Height(_) => maps::load_height(file),
+            Self::Overlay(overlay) => overlay.load(),
         }
     }
 
@@ -356,17 +347,15 @@ fn side_needs(
     // one reaches further, for the smooth step.
     terms.edge = !(terms.curved && terms.outline);
     if name == scene.side {
-        for &(overlay, opacity) in &scene.overlays {
-            if opacity > 0.0 {
-                let overlay = &drawing.overlays[overlay];
-                say(format!(
-                    "overlay \"{}\" at {:.0}%",
-                    overlay.id,
-                    opacity * 100.0
-                ));
-                terms.overlays += 1;
-                maps.push(MapUse::Overlay(overlay.clone()));
-            }
+        for (overlay, opacity) in scene.laid(drawing) {
+            say(format!(
+                "overlay \"{}\" at {:.0}%{}",
+                overlay.id,
+                opacity * 100.0,
+                of_categories(&overlay, drawing)
+            ));
+            terms.overlays += 1;
+            maps.push(MapUse::Overlay(overlay));
         }
     }
     let mut of_side = maps.iter().filter(|map| {
@@ -395,6 +384,20 @@ fn side_needs(
         media,
         other_media,
         exaggerate: scene.enhance.exaggerate,
+    }
+}
+
+/// Which of its categories are shown, where not all are.
+fn of_categories(shown: &Overlay, drawing: &Drawing) -> String {
+    let OverlayKind::Categorical(legend) = &shown.kind else {
+        return String::new();
+    };
+    match drawing.overlay(&shown.id) {
+        Some((_, whole)) if whole.kind != shown.kind => {
+            let names: Vec<&str> = legend.iter().map(LegendEntry::name).collect();
+            format!(", only {}", names.join(", "))
+        }
+        _ => String::new(),
     }
 }
 

@@ -12,6 +12,8 @@ mod masks;
 mod measure;
 #[path = "cli/missing.rs"]
 mod missing;
+#[path = "cli/probe.rs"]
+mod probe;
 #[path = "cli/reference.rs"]
 mod reference;
 #[path = "cli/register.rs"]

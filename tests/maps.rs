@@ -2,6 +2,8 @@
 
 mod support;
 
+#[path = "maps/bands.rs"]
+mod bands;
 #[path = "maps/bnf.rs"]
 mod bnf;
 #[path = "maps/colour.rs"]

@@ -10,6 +10,7 @@ mod measure;
 mod new;
 mod options;
 mod output;
+mod probe;
 mod reference;
 mod register;
 mod render;
@@ -60,6 +61,8 @@ enum Command {
     Measure(measure::Arguments),
     /// Propose control points from the pictures themselves
     Register(register::Arguments),
+    /// Say what overlays and stacks of bands show at one place
+    Probe(probe::Arguments),
     /// Start an exhibit from one picture
     New(new::Arguments),
     /// Write the sample exhibits and their maps
@@ -85,6 +88,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Tradeoff(arguments) => tradeoff::run(&arguments),
         Command::Measure(arguments) => measure::run(arguments),
         Command::Register(arguments) => register::run(&arguments),
+        Command::Probe(arguments) => probe::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

@@ -23,8 +23,9 @@ pub struct SceneArguments {
     /// The state of conservation, or none
     #[arg(long, value_name = "ID")]
     state: Option<String>,
-    /// An overlay instead of the scene's own; several from the lowest; opacity 0 to 1
-    #[arg(long, value_name = "ID[=OPACITY]")]
+    /// An overlay instead of the scene's own, or STACK/NM or STACK/ID of a stack of bands; several
+    /// from the lowest; opacity 0 to 1; of categories, those that are shown
+    #[arg(long, value_name = "ID[=OPACITY][:CATEGORY,…]")]
     overlay: Vec<String>,
     /// A lamp instead of the scene's own: the id of one, or what a manifest says of one, such as
     /// kind=distant,lux_at_sheet=1000,elevation_deg=45,azimuth_deg=135

@@ -13,7 +13,7 @@ use crate::{
         frames,
     },
     maps::{
-        self,
+        self, Placed,
         registration::propose::{Grey, Proposal, Proposed, recto_verso, states},
     },
 };
@@ -70,7 +70,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 .to_owned(),
         ));
     }
-    let (of_first, of_second) = (grey(&exhibit, first)?, grey(&exhibit, second)?);
+    // Of the second the points are pixels of its file; of the first, places on the sheet.
+    let of_first = grey(&exhibit, first, (&first.albedo.file).into())?;
+    let of_second = grey(&exhibit, second, (&second.albedo.file.path).into())?;
     let proposal = match arguments.state {
         Some(_) => states(&of_first, &of_second, arguments.reach_mm),
         None => recto_verso(&of_first, &of_second, arguments.reach_mm),
@@ -123,9 +125,9 @@ fn drawing<'e>(exhibit: &'e Exhibit, id: Option<&str>) -> Result<&'e Drawing, Fa
 }
 
 /// A photograph as the eye sees its green, on a sheet that it covers.
-fn grey(exhibit: &Exhibit, photograph: &Photograph<'_>) -> Result<Grey, Failure> {
+fn grey(exhibit: &Exhibit, photograph: &Photograph<'_>, file: Placed<'_>) -> Result<Grey, Failure> {
     let albedo = photograph.albedo;
-    let pyramid = maps::load_colour(&albedo.file.path, albedo.encoding)
+    let pyramid = maps::load_colour(file, albedo.encoding)
         .map_err(|error| Faults::from(exhibit.map_fault(&albedo.file.path, &error)))?;
     let channels = usize::from(pyramid.channels);
     let level = &pyramid.levels[0];
@@ -136,7 +138,10 @@ fn grey(exhibit: &Exhibit, photograph: &Photograph<'_>) -> Result<Grey, Failure>
         width: level.width as usize,
         height: level.height as usize,
         values: (0..pixels).map(|i| value(i).max(0.0).sqrt()).collect(),
-        mm_per_px: photograph.drawing.size_mm.x / f64::from(level.width),
+        mm_per_px: match file.warp {
+            Some(_) => albedo.file.extent_mm().x,
+            None => photograph.drawing.size_mm.x,
+        } / f64::from(level.width),
     })
 }
 

@@ -18,11 +18,12 @@ use super::{
 use crate::{
     colour,
     manifest::{
-        Accuracy, Exhibit, Fault, Faults, Scene, SideName, Source,
+        Accuracy, Exhibit, Fault, Faults, Registered, Scene, SideName, Source,
         capture::{self, Mask, Photograph},
         exhibit::LampKind,
         lighting::light_table_lux,
     },
+    maps::registration::{FitKind, Residual},
     needs::Needs,
     tradeoff::places::Maps,
 };
@@ -52,6 +53,7 @@ pub struct Report {
     pub tours: usize,
     pub warnings: Vec<Fault>,
     pub photographs: Vec<PhotographReport>,
+    pub registered: Vec<Registered>,
     pub scenes: Vec<SceneReport>,
     pub sources: Vec<SourceReport>,
     pub not_shown_yet: Vec<String>,
@@ -185,6 +187,14 @@ impl Report {
             tours: exhibit.tours.len(),
             warnings,
             photographs,
+            registered: exhibit
+                .registered
+                .iter()
+                .map(|registered| Registered {
+                    file: relative(exhibit, &registered.file),
+                    ..registered.clone()
+                })
+                .collect(),
             scenes: scenes?,
             sources: sources(exhibit),
             not_shown_yet: exhibit.not_shown_yet.clone(),
@@ -356,6 +366,9 @@ impl Display for Report {
             }
             f.write_str("\n")?;
         }
+        for registered in &self.registered {
+            write!(f, "\n{registered}")?;
+        }
         for photograph in &self.photographs {
             if f.alternate() || photograph.too_dark + photograph.saturated > 0 {
                 write!(f, "\n{photograph}")?;
@@ -405,6 +418,37 @@ impl Display for PhotographReport {
             share(self.saturated)
         )
     }
+}
+
+impl Display for Registered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Registered {} ({}): ", self.file.display(), self.place)?;
+        let Some(fit) = self.fit else {
+            return f.write_str("by offset, turn and scale; without control points no residual");
+        };
+        write!(f, "{} by {}", fit.word(), counted(self.points, "point"))?;
+        match (&self.left_out, &self.residual) {
+            (Some(left_out), _) if fit == FitKind::ThinPlate => {
+                f.write_str(", through all of them; each left out, it lies ")?;
+                spread(f, left_out)
+            }
+            (Some(left_out), Some(residual)) => {
+                f.write_str(", residual ")?;
+                spread(f, residual)?;
+                f.write_str("; each left out, it lies ")?;
+                spread(f, left_out)
+            }
+            _ => write!(f, ", as many as it takes, so that nothing tests them"),
+        }
+    }
+}
+
+fn spread(f: &mut fmt::Formatter<'_>, of: &Residual) -> fmt::Result {
+    write!(
+        f,
+        "{:.3} mm (root mean square), {:.3} mm at most (point {})",
+        of.rms_mm, of.largest_mm, of.at_point
+    )
 }
 
 impl Display for SceneReport {

@@ -118,7 +118,7 @@ impl Photograph<'_> {
     pub fn mask(&self) -> Result<Mask, MapError> {
         let limits = self.limits();
         let roughness = match self.roughness {
-            Some(map) => Some(maps::load_roughness(&map.file.path, map.gloss)?),
+            Some(map) => Some(maps::load_roughness(&map.file, map.gloss)?),
             None => None,
         };
         let level = roughness.as_ref().and_then(|map| map.levels.first());
@@ -140,7 +140,7 @@ impl Photograph<'_> {
                 )
             }));
         };
-        maps::for_each_colour_row(&self.albedo.file.path, self.albedo.encoding, each)?;
+        maps::for_each_colour_row(&self.albedo.file, self.albedo.encoding, each)?;
         Ok(Mask { size, codes })
     }
 

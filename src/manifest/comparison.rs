@@ -298,6 +298,7 @@ impl Exhibit {
                 shown.side = SideName::Recto;
                 shown.state = None;
                 shown.overlays.clear();
+                shown.categories.clear();
                 shown.camera = Camera {
                     centre_mm: size_mm / 2.0 + offset,
                     ..scene.camera

@@ -13,7 +13,10 @@ use glam::{DAffine2, DVec2, DVec3};
 use serde::Serialize;
 
 use crate::{
-    maps::{ColourEncoding, ColourMapName, NormalY},
+    maps::{
+        ColourEncoding, ColourMapName, NormalY, Warp,
+        registration::{FitKind, Residual},
+    },
     optics::{
         medium::{Matter, MediumKind},
         photometry::Photometry,
@@ -41,6 +44,8 @@ pub struct Exhibit {
     pub scenes: Vec<Scene>,
     pub tours: Vec<Tour>,
     pub accuracy: Accuracy,
+    /// The pictures that do not just cover their sheets.
+    pub registered: Vec<Registered>,
     /// What the manifest asks for that this version of Recto validates but does not show yet,
     /// each as a sentence for `recto check`.
     pub not_shown_yet: Vec<String>,
@@ -81,7 +86,9 @@ pub struct Drawing {
     pub flip: FlipAxis,
     pub transmission: Option<MapFile>,
     pub states: Vec<State>,
+    /// The manifest's own, and behind them what can be shown of each stack: its bands and views.
     pub overlays: Vec<Overlay>,
+    pub stacks: Vec<Stack>,
     pub hotspots: Vec<Hotspot>,
 }
 
@@ -197,11 +204,29 @@ pub enum SideName {
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapFile {
     pub path: PathBuf,
-    /// Width and height in pixels.
+    /// Width and height in pixels; of a picture that is bent, once it is.
     pub size: [u32; 2],
-    /// Side frame (mm) → texture coordinates (0…1, v down) of this picture.
+    /// Side frame (mm) → texture coordinates (0…1, v down) of this picture, once it is bent.
     pub uv_from_side: DAffine2,
+    /// What bends it into its place where it is loaded.
+    pub warp: Option<Arc<Warp>>,
     pub source: Source,
+}
+
+/// How a picture was put in its place, and how well what says so agrees.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Registered {
+    /// The table of the manifest that places it, as faults name it.
+    pub place: String,
+    /// The first picture that lies so.
+    pub file: PathBuf,
+    /// What the control points do to it; `None` where offset, turn and scale are given.
+    pub fit: Option<FitKind>,
+    pub points: usize,
+    /// How far the control points lie from where the fit puts them, on the sheet.
+    pub residual: Option<Residual>,
+    /// How far each lies from where the others alone put it.
+    pub left_out: Option<Residual>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -294,13 +319,49 @@ pub enum OverlayKind {
         range: [f64; 2],
     },
     Picture(ColourEncoding),
+    /// Of a stack; its file is that of the first of these bands.
+    Bands(BandView),
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct LegendEntry {
+    pub id: Option<String>,
     /// 8-bit sRGB, both in the file and on screen.
     pub colour: [u8; 3],
     pub label: Wording,
+}
+
+/// Pictures of one side in several bands of light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stack {
+    pub id: String,
+    pub title: Wording,
+    pub side: SideName,
+    /// By rising wavelength; never empty.
+    pub bands: Vec<Band>,
+}
+
+/// How much a side reflects in one band of light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    pub wavelength_nm: f64,
+    pub map: ColourMap,
+}
+
+/// What is shown of a stack.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BandView {
+    /// Those that it takes; never empty.
+    pub bands: Vec<Band>,
+    pub mix: BandMix,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum BandMix {
+    /// What each band gives to red, green and blue, times its reflectance.
+    Colour(Vec<[f64; 3]>),
+    /// The first of two bands less the second, on a scale from −`full` to `full` of reflectance.
+    Difference { full: f64 },
 }
 
 /// A place on a side that leads to a scene.
@@ -415,6 +476,9 @@ pub struct Scene {
     /// Overlays from the lowest to the uppermost: index into the drawing's overlays, opacity
     /// 0…1. Only overlays of the scene's side.
     pub overlays: Vec<(usize, f64)>,
+    /// Of overlays of categories of which not all are shown, those that are: index into the
+    /// drawing's overlays → indices into its legend.
+    pub categories: BTreeMap<usize, Vec<usize>>,
     pub compare: Option<Comparison>,
     pub camera: Camera,
     /// Indices into [`Exhibit::lamps`], at most [`MAX_LAMPS`].
@@ -559,7 +623,7 @@ pub enum CompareMode {
 }
 
 /// One member of a comparison, written `state:before`, `side:verso`, `overlay:damage`,
-/// `drawing:landscape`. Indices into the scene's drawing, or the exhibit for `Drawing`.
+/// `band:stack/700`, `drawing:landscape`. Indices into the scene's drawing, or the exhibit for `Drawing`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Member {
     State(usize),

@@ -3,6 +3,7 @@
 use glam::{DAffine2, DMat2, DQuat, DVec2, DVec3};
 
 use super::exhibit::{Drawing, FlipAxis, MapFile, SideName};
+use crate::maps::Placed;
 
 /// A point of the table frame, in the side frame of whichever side lies up on a sheet at rest.
 pub fn side_from_table(point: DVec3, size_mm: DVec2) -> DVec2 {
@@ -65,6 +66,15 @@ impl Drawing {
         match side {
             SideName::Recto => DAffine2::IDENTITY,
             SideName::Verso => other_side_frame(self.size_mm, self.flip),
+        }
+    }
+}
+
+impl<'f> From<&'f MapFile> for Placed<'f> {
+    fn from(file: &'f MapFile) -> Self {
+        Self {
+            path: &file.path,
+            warp: file.warp.as_deref(),
         }
     }
 }

@@ -11,6 +11,8 @@
 //! | a photograph → which of its pixels no sheet gives back | [`capture`] |
 //! | a starting manifest from one picture | [`create`] |
 //! | a lamp or camera in one line | `overrides::spec` |
+//! | what lies over a side, as one picture each | [`Scene::laid`], [`Overlay::load`] |
+//! | what overlays and stacks say at one place | [`readout`] |
 //! | a scene changed by options of a command | [`overrides`] |
 
 pub mod capture;
@@ -24,9 +26,11 @@ mod fault;
 pub mod frames;
 pub mod lighting;
 mod macros;
+mod overlay;
 pub mod overrides;
 mod query;
 pub mod raw;
+pub mod readout;
 mod schema;
 pub mod surface;
 mod validate;

@@ -4,17 +4,20 @@ mod spec;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 use toml::{Table, Value};
 
 use super::{
     Fault, Faults, Pattern, did_you_mean,
     exhibit::{
-        Camera, Drawing, Enhancement, Exhibit, Lamp, MAX_LAMPS, MAX_OVERLAYS, Member, Scene,
-        SideName,
+        Camera, Drawing, Enhancement, Exhibit, Lamp, LegendEntry, MAX_LAMPS, MAX_OVERLAYS, Member, OverlayKind,
+        Scene, SideName,
     },
     frames, one, quote, quoted_list,
     raw::{RawCamera, RawCompare, RawEnhance, RawShownOverlay},
+    validate::chosen,
 };
 use crate::units::Degrees;
 use spec::{decode, fault, parts, table, validated, value};
@@ -39,7 +42,7 @@ pub struct Overrides {
     pub side: Option<SideName>,
     /// A state of conservation, or `none`.
     pub state: Option<String>,
-    /// `ID` or `ID=OPACITY`, from the lowest; if any, they take the place of the scene's own.
+    /// `ID`, `ID=OPACITY`, `ID:CATEGORY,…` or both, from the lowest; if any, they take the place of the scene's own.
     pub overlays: Vec<String>,
     /// `ID` or `key=value,…`; if any, they take the place of the scene's own.
     pub lamps: Vec<String>,
@@ -136,6 +139,7 @@ impl Overrides {
             side: SideName::Recto,
             state: None,
             overlays: Vec::new(),
+            categories: BTreeMap::new(),
             compare: None,
             camera: Camera::whole_sheet(exhibit.drawings[drawing].size_mm),
             ..base.clone()
@@ -173,10 +177,11 @@ impl Overrides {
             faults.push(too_many(OPTION, self.overlays.len(), MAX_OVERLAYS));
         }
         scene.overlays.clear();
+        scene.categories.clear();
         for (i, spec) in self.overlays.iter().enumerate() {
             let option = numbered(OPTION, i, self.overlays.len());
             match shown_overlay(&option, spec, scene.side, drawing) {
-                Ok((index, _)) if scene.overlays.iter().any(|(i, _)| *i == index) => {
+                Ok((index, ..)) if scene.overlays.iter().any(|(i, _)| *i == index) => {
                     let found = format!("{} a second time", quote(&drawing.overlays[index].id));
                     faults.push(fault(
                         &option,
@@ -185,7 +190,11 @@ impl Overrides {
                         "remove one of the two",
                     ));
                 }
-                Ok(shown) => scene.overlays.push(shown),
+                Ok((index, opacity, categories)) => {
+                    scene.overlays.push((index, opacity));
+                    let shown = categories.map(|categories| (index, categories));
+                    scene.categories.extend(shown);
+                }
                 Err(found) => faults.extend(found),
             }
         }
@@ -301,7 +310,7 @@ fn member(
             let ids = drawing.states.iter().map(|state| state.id.as_str());
             resolve(option, "state", id, ids).map(Member::State)
         }
-        "overlay" => {
+        "overlay" | "band" => {
             let ids = drawing.overlays.iter().map(|overlay| overlay.id.as_str());
             resolve(option, "overlay", id, ids).map(Member::Overlay)
         }
@@ -314,15 +323,22 @@ fn member(
     }
 }
 
+/// Index, opacity, and the categories that are shown where not all are.
+type ShownOverlay = (usize, f64, Option<Vec<usize>>);
+
 fn shown_overlay(
     option: &str,
     spec: &str,
     side: SideName,
     drawing: &Drawing,
-) -> Result<(usize, f64), Vec<Fault>> {
-    let (id, opacity) = match spec.split_once('=') {
-        Some((id, opacity)) => (id, Some(value(opacity))),
+) -> Result<ShownOverlay, Vec<Fault>> {
+    let (rest, categories) = match spec.split_once(':') {
+        Some((rest, categories)) => (rest, Some(categories)),
         None => (spec, None),
+    };
+    let (id, opacity) = match rest.split_once('=') {
+        Some((id, opacity)) => (id, Some(value(opacity))),
+        None => (rest, None),
     };
     let ids = drawing.overlays.iter().map(|overlay| overlay.id.as_str());
     let index = resolve(option, "overlay", id, ids)?;
@@ -338,8 +354,32 @@ fn shown_overlay(
     }
     let mut written = Table::from_iter([("id".to_owned(), Value::from(id))]);
     written.extend(opacity.map(|opacity| ("opacity".to_owned(), opacity)));
+    let names: Option<Vec<Value>> = categories.map(|list| parts(list).map(Value::from).collect());
+    written.extend(names.map(|names| ("categories".to_owned(), names.into())));
     let shown: RawShownOverlay = decode(option, written.into())?;
-    Ok((index, shown.opacity.map_or(1.0, |opacity| opacity.0)))
+    let legend: &[LegendEntry] = match &overlay.kind {
+        OverlayKind::Categorical(legend) => legend,
+        _ => &[],
+    };
+    let mut faults = Vec::new();
+    let categories = shown.categories.map(|list| {
+        let mut indices = Vec::new();
+        for (_, name) in list.iter() {
+            match chosen(legend, name.as_str()) {
+                Ok(entry) if indices.contains(&entry) => {}
+                Ok(entry) => indices.push(entry),
+                Err(words) => faults.push(fault(option, words.found, words.allowed, words.remedy)),
+            }
+        }
+        indices.sort_unstable();
+        indices
+    });
+    if faults.is_empty() {
+        let opacity = shown.opacity.map_or(1.0, |opacity| opacity.0);
+        Ok((index, opacity, categories))
+    } else {
+        Err(faults)
+    }
 }
 
 fn described_lamp(option: &str, spec: &str, exhibit: &Exhibit) -> Result<Lamp, Vec<Fault>> {

@@ -8,8 +8,8 @@ use super::{
     decode::Pattern,
     document::{self, Document, Words},
     exhibit::{
-        Camera, Drawing, Exhibit, HeightMap, MapFile, MediaContent, MediaMap, OverlayKind, Scene,
-        Side, SideName, SidePatch, State, Surface, Wording,
+        Band, Camera, Drawing, Exhibit, HeightMap, MapFile, MediaContent, MediaMap, Overlay,
+        OverlayKind, Scene, Side, SideName, SidePatch, State, Surface, Wording,
     },
     fault::{Fault, Faults, Severity, quote},
     raw::values::FilePath,
@@ -149,7 +149,7 @@ impl Drawing {
     }
 
     /// The index and the overlay with this id.
-    pub fn overlay(&self, id: &str) -> Option<(usize, &super::exhibit::Overlay)> {
+    pub fn overlay(&self, id: &str) -> Option<(usize, &Overlay)> {
         self.overlays
             .iter()
             .enumerate()
@@ -182,6 +182,17 @@ impl Drawing {
         }
     }
 
+    /// The overlays that the manifest names as such, without what can be shown of stacks.
+    pub fn own_overlays(&self) -> impl Iterator<Item = &Overlay> {
+        let own = |overlay: &&Overlay| !matches!(overlay.kind, OverlayKind::Bands(_));
+        self.overlays.iter().filter(own)
+    }
+
+    /// The bands of every stack.
+    pub fn bands(&self) -> impl Iterator<Item = &Band> {
+        self.stacks.iter().flat_map(|stack| &stack.bands)
+    }
+
     /// Every picture of the drawing.
     pub fn maps(&self) -> impl Iterator<Item = &MapFile> {
         let surface = match &self.surface {
@@ -201,7 +212,8 @@ impl Drawing {
             .chain(sides.flat_map(Side::maps))
             .chain(&self.transmission)
             .chain(patches.flat_map(SidePatch::maps))
-            .chain(self.overlays.iter().map(|overlay| &overlay.file))
+            .chain(self.own_overlays().map(|overlay| &overlay.file))
+            .chain(self.bands().map(|band| &band.map.file))
     }
 }
 
@@ -220,11 +232,14 @@ impl Drawing {
             .iter()
             .filter_map(|overlay| match overlay.kind {
                 OverlayKind::Picture(encoding) => Some((&overlay.file, encoding)),
-                OverlayKind::Categorical(_) | OverlayKind::Continuous { .. } => None,
+                OverlayKind::Categorical(_)
+                | OverlayKind::Continuous { .. }
+                | OverlayKind::Bands(_) => None,
             });
         sides
             .map(|side| &side.albedo)
             .chain(patches.filter_map(|patch| patch.albedo.as_ref()))
+            .chain(self.bands().map(|band| &band.map))
             .map(|map| (&map.file, map.encoding))
             .chain(pictures)
     }
@@ -261,7 +276,9 @@ impl Drawing {
                     let colours = legend.iter().map(|entry| entry.colour).collect();
                     Some((&overlay.file, colours))
                 }
-                OverlayKind::Continuous { .. } | OverlayKind::Picture(_) => None,
+                OverlayKind::Continuous { .. }
+                | OverlayKind::Picture(_)
+                | OverlayKind::Bands(_) => None,
             });
         media.chain(overlays)
     }

@@ -42,17 +42,28 @@ const CIVIDIS: [[u8; 3]; 10] = [
     [0xe1, 0xcc, 0x55],
     [0xfe, 0xe8, 0x38],
 ];
+/// Blue and red as dark as each other, with white between them: own choice, apart for all common
+/// colour blindnesses.
+const DIVERGING: [[u8; 3]; 5] = [
+    [0x1b, 0x3f, 0x8f],
+    [0x7f, 0xa6, 0xd8],
+    [0xf5, 0xf4, 0xf2],
+    [0xe3, 0x93, 0x79],
+    [0x8e, 0x1c, 0x24],
+];
 const GREY: [[u8; 3]; 2] = [[0; 3], [255; 3]];
 
 impl ColourMapName {
     /// The linear sRGB colour of `value`, which is clamped to 0…1 (NaN to 0). CIELAB lightness
-    /// rises with it.
+    /// rises with it, but for that of [`Diverging`](Self::Diverging), which is highest in the
+    /// middle and falls alike on both sides.
     pub fn colour(self, value: f64) -> [f64; 3] {
         let anchors: &[[u8; 3]] = match self {
             Self::Viridis => &VIRIDIS,
             Self::Magma => &MAGMA,
             Self::Cividis => &CIVIDIS,
             Self::Grey => &GREY,
+            Self::Diverging => &DIVERGING,
         };
         let value = if value.is_nan() {
             0.0

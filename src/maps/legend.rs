@@ -5,10 +5,11 @@ use std::{collections::HashMap, path::Path};
 use rayon::prelude::*;
 
 use super::{
-    ColourMapName, MapError, Missing, Pyramid,
+    ColourMapName, MapError, Missing, Placed, Pyramid,
     decode::{self, Raster, Samples},
     load::{decode, finish},
     pyramid,
+    warp::{self, Beyond},
 };
 use crate::colour;
 
@@ -122,7 +123,11 @@ fn weights<T: pyramid::Texel>(
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn load_overlay_categorical(path: &Path, legend: &[[u8; 3]]) -> Result<LegendMap, MapError> {
+pub fn load_overlay_categorical<'f>(
+    file: impl Into<Placed<'f>>,
+    legend: &[[u8; 3]],
+) -> Result<LegendMap, MapError> {
+    let Placed { path, warp } = file.into();
     let raster = decode(path)?;
     let texel = |&entry: &[u8; 3]| {
         let [r, g, b] = colour::linear_from_srgb8(entry).map(|v| v as f32);
@@ -136,7 +141,8 @@ pub fn load_overlay_categorical(path: &Path, legend: &[[u8; 3]]) -> Result<Legen
             out[x] = entry.map_or([0.0; 4], |i| texels[i]);
         });
     };
-    let pyramid = pyramid::build::<u16, 4, 4>(raster.size(), row, |pixel| pixel);
+    let size = raster.size();
+    let pyramid = warp::build::<u16, 4, 4>(warp, size, row, |pixel| pixel, Beyond::Nothing);
     Ok(LegendMap {
         pyramid: finish(&raster, pyramid),
         unlisted: unlisted(&raster, legend),
@@ -149,7 +155,11 @@ pub fn load_overlay_categorical(path: &Path, legend: &[[u8; 3]]) -> Result<Legen
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn load_overlay_continuous(path: &Path, map: ColourMapName) -> Result<Pyramid, MapError> {
+pub fn load_overlay_continuous<'f>(
+    file: impl Into<Placed<'f>>,
+    map: ColourMapName,
+) -> Result<Pyramid, MapError> {
+    let Placed { path, warp } = file.into();
     /// Finer than 8 bits can tell apart.
     const STEPS: usize = 4096;
     let step = |i| map.colour(i as f64 / STEPS as f64).map(|v| v as f32);
@@ -161,14 +171,16 @@ pub fn load_overlay_continuous(path: &Path, map: ColourMapName) -> Result<Pyrami
             out[x] = [pixel[0].clamp(0.0, 1.0) * alpha, alpha];
         });
     };
-    let pyramid = pyramid::build::<u16, 2, 4>(raster.size(), row, |[value, alpha]| {
+    let paint = |[value, alpha]: [f32; 2]| {
         if alpha <= 0.0 {
             return [0.0; 4];
         }
         let place = (value / alpha).clamp(0.0, 1.0) * STEPS as f32;
         let [r, g, b] = table[place.round() as usize];
         [r * alpha, g * alpha, b * alpha, alpha]
-    });
+    };
+    let size = raster.size();
+    let pyramid = warp::build::<u16, 2, 4>(warp, size, row, paint, Beyond::Nothing);
     Ok(finish(&raster, pyramid))
 }
 

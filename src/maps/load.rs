@@ -9,10 +9,11 @@ use std::{
 use half::f16;
 
 use super::{
-    ColourEncoding, MapError, NormalY, Pyramid, Texels,
+    ColourEncoding, MapError, NormalY, Placed, Pyramid, Texels, Warp,
     decode::{self, Raster, Samples},
     linear::Linear,
     pyramid::{self, Texel},
+    warp::{self, Beyond},
 };
 
 /// Values that count as inside 0…1. ICC profiles round the nine numbers of their matrix to
@@ -26,14 +27,17 @@ const INSIDE: RangeInclusive<f32> = -1e-4..=1.001;
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn load_colour(path: &Path, encoding: ColourEncoding) -> Result<Pyramid, MapError> {
+pub fn load_colour<'f>(
+    file: impl Into<Placed<'f>>,
+    encoding: ColourEncoding,
+) -> Result<Pyramid, MapError> {
+    let Placed { path, warp } = file.into();
     let raster = decode(path)?;
     let linear = Linear::new(path, &raster, encoding)?;
     let row = |y: usize, out: &mut [[f32; 4]]| linear.row(y, out);
-    Ok(finish(
-        &raster,
-        in_gamut(&raster, row, |[r, g, b, _]| [r, g, b, 1.0]),
-    ))
+    let opaque = |[r, g, b, _]: [f32; 4]| [r, g, b, 1.0];
+    let pyramid = in_gamut(warp, &raster, row, opaque, Beyond::Edge);
+    Ok(finish(&raster, pyramid))
 }
 
 /// Reads a map of colour as [`load_colour`] does, without levels and without narrowing: gives each
@@ -41,13 +45,21 @@ pub fn load_colour(path: &Path, encoding: ColourEncoding) -> Result<Pyramid, Map
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn for_each_colour_row(
-    path: &Path,
+pub fn for_each_colour_row<'f>(
+    file: impl Into<Placed<'f>>,
     encoding: ColourEncoding,
     mut each: impl FnMut(usize, &[[f32; 4]]),
 ) -> Result<(), MapError> {
+    let Placed { path, warp } = file.into();
     let raster = decode(path)?;
     let linear = Linear::new(path, &raster, encoding)?;
+    if let Some(warp) = warp {
+        let row = |y: usize, out: &mut [[f32; 4]]| linear.row(y, out);
+        let texels = warp.resampled(raster.size(), row, Beyond::Edge);
+        let rows = texels.chunks(warp.size()[0] as usize).enumerate();
+        rows.for_each(|(y, row)| each(y, row));
+        return Ok(());
+    }
     let mut row = vec![[0.0; 4]; raster.width];
     for y in 0..raster.height {
         linear.row(y, &mut row);
@@ -61,7 +73,11 @@ pub fn for_each_colour_row(
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn load_overlay_picture(path: &Path, encoding: ColourEncoding) -> Result<Pyramid, MapError> {
+pub fn load_overlay_picture<'f>(
+    file: impl Into<Placed<'f>>,
+    encoding: ColourEncoding,
+) -> Result<Pyramid, MapError> {
+    let Placed { path, warp } = file.into();
     let raster = decode(path)?;
     let linear = Linear::new(path, &raster, encoding)?;
     let row = |y: usize, out: &mut [[f32; 4]]| {
@@ -71,14 +87,17 @@ pub fn load_overlay_picture(path: &Path, encoding: ColourEncoding) -> Result<Pyr
             *pixel = [pixel[0] * alpha, pixel[1] * alpha, pixel[2] * alpha, alpha];
         }
     };
-    Ok(finish(&raster, in_gamut(&raster, row, |pixel| pixel)))
+    let pyramid = in_gamut(warp, &raster, row, |pixel| pixel, Beyond::Nothing);
+    Ok(finish(&raster, pyramid))
 }
 
 /// 16-bit texels where every value lies in 0…1, else half floats.
 fn in_gamut(
+    warp: Option<&Warp>,
     raster: &Raster,
     row: impl Fn(usize, &mut [[f32; 4]]) + Sync,
     paint: impl Fn([f32; 4]) -> [f32; 4] + Sync,
+    beyond: Beyond,
 ) -> Pyramid {
     let outside = AtomicBool::new(false);
     let watched = |y: usize, out: &mut [[f32; 4]]| {
@@ -87,12 +106,12 @@ fn in_gamut(
             outside.store(true, Ordering::Relaxed);
         }
     };
-    let pyramid = pyramid::build::<u16, 4, 4>(raster.size(), watched, &paint);
+    let pyramid = warp::build::<u16, 4, 4>(warp, raster.size(), watched, &paint, beyond);
     if !outside.into_inner() {
         return pyramid;
     }
     drop(pyramid);
-    pyramid::build::<f16, 4, 4>(raster.size(), row, paint)
+    warp::build::<f16, 4, 4>(warp, raster.size(), row, paint, beyond)
 }
 
 /// Loads a normal map as the x (right), y (up) and z (out) of unit normals, in 16 bits, with 1 as
@@ -104,7 +123,8 @@ fn in_gamut(
 ///
 /// # Errors
 /// As [`super::verify`], and [`MapError::Unsupported`] for fewer than 3 channels.
-pub fn load_normal(path: &Path, y: NormalY) -> Result<Pyramid, MapError> {
+pub fn load_normal<'f>(file: impl Into<Placed<'f>>, y: NormalY) -> Result<Pyramid, MapError> {
+    let Placed { path, warp } = file.into();
     let raster = decode(path)?;
     if raster.channels < 3 {
         return Err(MapError::unsupported(
@@ -115,9 +135,10 @@ pub fn load_normal(path: &Path, y: NormalY) -> Result<Pyramid, MapError> {
     }
     let up = if y == NormalY::Up { 1.0 } else { -1.0 };
     let pyramid = match raster.samples {
-        Samples::U8(_) => normals(&raster, up, Coding::of_codes(255.0, 128.0)),
-        Samples::U16(_) => normals(&raster, up, Coding::of_codes(65535.0, 32768.0)),
+        Samples::U8(_) => normals(warp, &raster, up, Coding::of_codes(255.0, 128.0)),
+        Samples::U16(_) => normals(warp, &raster, up, Coding::of_codes(65535.0, 32768.0)),
         Samples::F32(_) => normals(
+            warp,
             &raster,
             up,
             Coding {
@@ -166,14 +187,22 @@ pub fn normal_coding(texels: &Texels) -> Coding {
     }
 }
 
-fn normals(raster: &Raster, up: f32, file: Coding) -> Pyramid {
+fn normals(warp: Option<&Warp>, raster: &Raster, up: f32, file: Coding) -> Pyramid {
     let row = |y: usize, out: &mut [[f32; 3]]| {
         raster.for_each_in_row(y, |x, [nx, ny, nz, _]| {
             let [nx, ny, nz] = [nx, ny, nz].map(|v| file.decode(v));
             out[x] = unit([nx, ny * up, nz]);
         });
     };
-    pack_normals(raster.size(), row)
+    let Some(warp) = warp else {
+        return pack_normals(raster.size(), row);
+    };
+    let mut texels = warp.resampled(raster.size(), row, Beyond::Edge);
+    warp.turn(&mut texels);
+    let size = warp.size().map(|n| n as usize);
+    pack_normals(size, |y, out: &mut [[f32; 3]]| {
+        out.copy_from_slice(&texels[y * size[0]..(y + 1) * size[0]]);
+    })
 }
 
 /// The chain of a picture of unit normals, coded as [`normal_coding`] says.
@@ -206,9 +235,10 @@ fn unit([x, y, z]: [f32; 3]) -> [f32; 3] {
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn load_height(path: &Path) -> Result<Pyramid, MapError> {
+pub fn load_height<'f>(file: impl Into<Placed<'f>>) -> Result<Pyramid, MapError> {
+    let Placed { path, warp } = file.into();
     let raster = decode(path)?;
-    Ok(finish(&raster, scalar::<u16>(&raster, |v, _| v)))
+    Ok(finish(&raster, scalar::<u16>(warp, &raster, |v, _| v)))
 }
 
 /// Loads a map of roughness, 0 smooth to 1 rough, from its first channel; where `gloss`, from a
@@ -216,12 +246,13 @@ pub fn load_height(path: &Path) -> Result<Pyramid, MapError> {
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn load_roughness(path: &Path, gloss: bool) -> Result<Pyramid, MapError> {
+pub fn load_roughness<'f>(file: impl Into<Placed<'f>>, gloss: bool) -> Result<Pyramid, MapError> {
+    let Placed { path, warp } = file.into();
     let raster = decode(path)?;
     let value = |v: f32, _| if gloss { 1.0 - v } else { v };
     let pyramid = match raster.samples {
-        Samples::U8(_) => scalar::<u8>(&raster, value),
-        _ => scalar::<u16>(&raster, value),
+        Samples::U8(_) => scalar::<u8>(warp, &raster, value),
+        _ => scalar::<u16>(warp, &raster, value),
     };
     Ok(finish(&raster, pyramid))
 }
@@ -233,18 +264,25 @@ pub fn load_roughness(path: &Path, gloss: bool) -> Result<Pyramid, MapError> {
 /// As [`super::verify`].
 pub fn load_outline(path: &Path) -> Result<Pyramid, MapError> {
     let raster = decode(path)?;
-    Ok(finish(&raster, scalar::<u8>(&raster, |v, alpha| v * alpha)))
+    Ok(finish(
+        &raster,
+        scalar::<u8>(None, &raster, |v, alpha| v * alpha),
+    ))
 }
 
 /// One channel from the first channel and alpha of each pixel, both within 0…1.
-fn scalar<T: Texel>(raster: &Raster, value: impl Fn(f32, f32) -> f32 + Sync) -> Pyramid {
+fn scalar<T: Texel>(
+    warp: Option<&Warp>,
+    raster: &Raster,
+    value: impl Fn(f32, f32) -> f32 + Sync,
+) -> Pyramid {
     let row = |y: usize, out: &mut [[f32; 1]]| {
         raster.for_each_in_row(y, |x, pixel| {
             let alpha = raster.alpha(pixel);
             out[x] = [value(pixel[0].clamp(0.0, 1.0), alpha)];
         });
     };
-    pyramid::build::<T, 1, 1>(raster.size(), row, |mean| mean)
+    warp::build::<T, 1, 1>(warp, raster.size(), row, |mean| mean, Beyond::Edge)
 }
 
 /// A picture whose colours do not depend on its alpha, whichever way its file stores them.

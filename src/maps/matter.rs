@@ -6,13 +6,17 @@
 //! where their coverages add up to more than 1 they are scaled to 1. What no medium covers is
 //! paper.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{
-    MAX_WEIGHTS, MapError, Pyramid,
+    MAX_WEIGHTS, MapError, Pyramid, Warp,
     decode::{self, Raster},
     legend::{check_weights, find, for_each_colour},
-    load, pyramid,
+    load,
+    warp::{self, Beyond},
 };
 
 /// The most sorts of particles on one side.
@@ -35,6 +39,8 @@ pub enum MatterSlot {
 #[derive(Clone, Debug, PartialEq)]
 pub struct MediaLayer<T> {
     pub path: PathBuf,
+    /// What bends it into its place; all maps of a side lie alike.
+    pub warp: Option<Arc<Warp>>,
     pub channels: MediaChannels<T>,
 }
 
@@ -95,7 +101,7 @@ pub fn load_matter(
         let codes = codes(shares);
         std::array::from_fn(|i| codes[first + i])
     };
-    let pyramid = pyramid::build::<u8, SHARES, 4>(stack.size, row, paint);
+    let pyramid = warp::build::<u8, SHARES, 4>(stack.warp, stack.size, row, paint, Beyond::Edge);
     Ok(stack.finish(pyramid))
 }
 
@@ -135,7 +141,7 @@ pub fn load_roughness_of_matter(
             |x, alpha, share| out[x][0] += share * (alpha as f32 - paper),
         );
     };
-    let pyramid = pyramid::build::<u8, 1, 1>(stack.size, row, |mean| mean);
+    let pyramid = warp::build::<u8, 1, 1>(stack.warp, stack.size, row, |mean| mean, Beyond::Edge);
     Ok(stack.finish(pyramid))
 }
 
@@ -144,6 +150,7 @@ struct Stack<'l, T> {
     /// From the lowest to the uppermost.
     layers: Vec<Layer<'l, T>>,
     size: [usize; 2],
+    warp: Option<&'l Warp>,
 }
 
 struct Layer<'l, T> {
@@ -177,6 +184,7 @@ impl<'l, T: Copy + Sync> Stack<'l, T> {
         Ok(Self {
             layers: opened,
             size,
+            warp: layers.first().and_then(|layer| layer.warp.as_deref()),
         })
     }
 

@@ -8,11 +8,15 @@
 //! | raster → linear sRGB | `icc`, [`load_colour`] |
 //! | raster → levels for the GPU | [`Pyramid`] |
 //! | media over each other → what shows of each | [`load_matter`] |
+//! | several bands of light → one picture | [`load_bands_as_colour`] |
+//! | what a file says at one place | [`colour_at`], [`value_at`], [`category_at`] |
 //! | pixels → file, whole or not at all | [`encode`] |
 //! | another picture's place on the sheet | [`registration`] |
+//! | a picture bent into its place while it is loaded | [`Warp`] |
 //!
 //! Rows run from the top of the picture, pixels from its left, channels interleaved.
 
+mod bands;
 mod bare;
 mod colour_map;
 mod decode;
@@ -26,12 +30,15 @@ mod load;
 mod matter;
 mod missing;
 mod pyramid;
+mod readout;
 pub mod registration;
 mod slope;
 pub mod surface;
+mod warp;
 
 use serde::{Deserialize, Serialize};
 
+pub use bands::{BandPicture, DIVERGING, load_bands_as_colour, load_bands_as_difference};
 pub use bare::{bare_albedo, mean_of};
 pub use error::MapError;
 pub use header::{Header, probe, verify, verify_colour};
@@ -49,7 +56,9 @@ pub use matter::{
 };
 pub use missing::Missing;
 pub use pyramid::{Level, Pyramid, Texels};
+pub use readout::{category_at, colour_at, value_at};
 pub use slope::load_normal_from_height;
+pub use warp::{Placed, Warp};
 
 /// The largest width or height in pixels: what graphics cards take as a 2-D texture.
 pub const MAX_SIDE: u32 = 16384;
@@ -78,7 +87,7 @@ pub enum NormalY {
     Down,
 }
 
-/// A colour map for continuous overlays, from low to high values.
+/// A colour map for values, from low to high.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ColourMapName {
@@ -91,4 +100,6 @@ pub enum ColourMapName {
     Cividis,
     /// Black to white.
     Grey,
+    /// Blue over white to red, for values on both sides of the middle of their range.
+    Diverging,
 }

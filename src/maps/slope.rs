@@ -1,13 +1,12 @@
 //! Normals from the slopes of a height map, for sides that have no normal map of their own.
 
-use std::path::Path;
-
 use glam::DVec2;
 use rayon::prelude::*;
 
 use super::{
-    MapError, Pyramid,
+    MapError, Placed, Pyramid,
     load::{decode, finish, pack_normals},
+    warp::Beyond,
 };
 
 /// Micrometres in a millimetre.
@@ -19,24 +18,36 @@ const UM_PER_MM: f64 = 1000.0;
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn load_normal_from_height(
-    path: &Path,
+pub fn load_normal_from_height<'f>(
+    file: impl Into<Placed<'f>>,
     range_um: [f64; 2],
     extent_mm: DVec2,
 ) -> Result<Pyramid, MapError> {
+    let Placed { path, warp } = file.into();
     let raster = decode(path)?;
-    let [width, height] = raster.size();
-    let mut heights = vec![0.0f32; width * height];
-    heights
-        .par_chunks_mut(width)
-        .enumerate()
-        .for_each(|(y, row)| {
-            raster.for_each_in_row(y, |x, pixel| row[x] = pixel[0].clamp(0.0, 1.0));
-        });
+    let row = |y: usize, out: &mut [[f32; 1]]| {
+        raster.for_each_in_row(y, |x, pixel| out[x] = [pixel[0].clamp(0.0, 1.0)]);
+    };
+    // What is bent is bent before its slopes are taken.
+    let ([width, height], heights) = match warp {
+        Some(warp) => {
+            let heights = warp.resampled(raster.size(), row, Beyond::Edge);
+            (warp.size().map(|n| n as usize), heights)
+        }
+        None => {
+            let [width, height] = raster.size();
+            let mut heights = vec![[0.0f32]; width * height];
+            heights
+                .par_chunks_mut(width)
+                .enumerate()
+                .for_each(|(y, out)| row(y, out));
+            ([width, height], heights)
+        }
+    };
     let span_mm = (range_um[1] - range_um[0]) / UM_PER_MM;
     let texel_mm = extent_mm / DVec2::new(width as f64, height as f64);
     let slope = |low: usize, high: usize, steps: usize, texel: f64| {
-        let rise = f64::from(heights[high]) - f64::from(heights[low]);
+        let rise = f64::from(heights[high][0]) - f64::from(heights[low][0]);
         if steps == 0 {
             0.0
         } else {
@@ -64,7 +75,7 @@ pub fn load_normal_from_height(
             *normal = [-along_x, -along_y, 1.0].map(|v| (v / length) as f32);
         }
     };
-    Ok(finish(&raster, pack_normals(raster.size(), row)))
+    Ok(finish(&raster, pack_normals([width, height], row)))
 }
 
 #[cfg(test)]

@@ -29,6 +29,7 @@ impl<T> MediaStack<T> {
             .iter()
             .map(|map| MediaLayer {
                 path: map.file.path.clone(),
+                warp: map.file.warp.clone(),
                 channels: match &map.content {
                     MediaContent::Legend(legend) => MediaChannels::Legend(
                         legend

@@ -14,6 +14,8 @@ use super::{
 
 /// Heights of black and white of every height map, in µm.
 pub const HEIGHT_RANGE_UM: [f32; 2] = [-128.0, 128.0];
+/// How many grey quantities a side may have.
+pub const GREYS: usize = 8;
 /// Rows of one band.
 const BAND_ROWS: usize = 48;
 /// How far ageing ink spreads into the paper, in mm.
@@ -113,8 +115,8 @@ pub struct SideMaps<const COLOURS: usize> {
     pub normal: Vec<[u8; 3]>,
     /// GGX α, 8 bits.
     pub roughness: Vec<u8>,
-    /// Up to four grey quantities, 8 bits.
-    pub greys: [Vec<u8>; 4],
+    /// Up to [`GREYS`] grey quantities, 8 bits.
+    pub greys: [Vec<u8>; GREYS],
 }
 
 /// What a side makes of one texel.
@@ -124,7 +126,7 @@ pub struct Shown<const COLOURS: usize> {
     /// GGX α.
     pub roughness: f32,
     /// Bytes as they are written.
-    pub greys: [u8; 4],
+    pub greys: [u8; GREYS],
 }
 
 /// Computes all maps of a side.
@@ -387,7 +389,7 @@ mod tests {
         let maps = maps(grid, &paper, Face::Recto, &strokes, |texel| Shown {
             colours: [texel.colour(Vec3::ZERO, Vec3::ZERO)],
             roughness: 0.5,
-            greys: [0; 4],
+            greys: [0; GREYS],
         });
         let green_at = |y: f32| {
             let row = (y / grid.pitch_mm.y) as usize;

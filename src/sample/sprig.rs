@@ -125,7 +125,7 @@ pub fn write(out: &mut Out) -> Result<(), SampleError> {
         Shown {
             colours: [texel.colour(wash, Vec3::ZERO)],
             roughness: 0.6,
-            greys: [0; 4],
+            greys: [0; side::GREYS],
         }
     });
     let [albedo] = maps.colours;

@@ -59,7 +59,7 @@ pub fn maps(
         Shown {
             colours: [after, before].map(|ageing| texel.colour(tint, ageing)),
             roughness: dusty + (0.36 - dusty) * ink,
-            greys: [side::unit8(chalk), side::unit8(ink), 0, 0],
+            greys: [side::unit8(chalk), side::unit8(ink), 0, 0, 0, 0, 0, 0],
         }
     })
 }

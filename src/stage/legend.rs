@@ -5,8 +5,8 @@ use bevy::prelude::*;
 use super::{Shown, StageSet};
 use crate::{
     colour,
-    manifest::exhibit::{CompareMode, Overlay, OverlayKind, Wording},
-    maps::ColourMapName,
+    manifest::exhibit::{BandMix, CompareMode, Overlay, OverlayKind, Wording},
+    maps::{ColourMapName, DIVERGING},
 };
 
 /// Where a face that has more than ASCII usually lies; the first found is used.
@@ -88,14 +88,7 @@ fn draw(
     for entity in &drawn {
         commands.entity(entity).despawn();
     }
-    let drawing = &shown.exhibit.drawings[shown.scene.drawing];
-    let overlays: Vec<(&Overlay, f64)> = shown
-        .scene
-        .overlays
-        .iter()
-        .filter(|(_, opacity)| *opacity > 0.0)
-        .map(|(index, opacity)| (&drawing.overlays[*index], *opacity))
-        .collect();
+    let overlays = overlays(&shown);
     let difference = shown
         .scene
         .compare
@@ -137,7 +130,7 @@ fn draw(
                 };
                 words.scale(rows, DIFFERENCE_COLOURS, "0".to_owned(), top);
             }
-            for (overlay, opacity) in overlays {
+            for (overlay, opacity) in &overlays {
                 rows.spawn(words.line(format!(
                     "{} · {:.0} %",
                     words.say(&overlay.title, &overlay.id),
@@ -161,10 +154,36 @@ fn draw(
                         let top = format!("{} {unit}", range[1]);
                         words.scale(rows, *colour_map, range[0].to_string(), top);
                     }
+                    OverlayKind::Bands(view) => {
+                        rows.spawn(words.line(view.words()));
+                        if let BandMix::Difference { full } = view.mix {
+                            words.scale(rows, DIVERGING, format!("−{full}"), format!("+{full}"));
+                        }
+                    }
                     OverlayKind::Picture(_) => {}
                 }
             }
         });
+}
+
+/// What lies on the sheet, or on the members of a comparison, each overlay once.
+fn overlays(shown: &Shown) -> Vec<(Overlay, f64)> {
+    let exhibit = &shown.exhibit;
+    let mut all: Vec<(Overlay, f64)> = Vec::new();
+    let members = exhibit.members(&shown.scene);
+    let scenes = if members.is_empty() {
+        vec![shown.scene.clone()]
+    } else {
+        members
+    };
+    for scene in &scenes {
+        for (overlay, opacity) in scene.laid(exhibit.drawing_of(scene)) {
+            if !all.iter().any(|(known, _)| *known == overlay) {
+                all.push((overlay, opacity));
+            }
+        }
+    }
+    all
 }
 
 /// Bundles of one legend.

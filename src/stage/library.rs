@@ -280,7 +280,7 @@ fn unless_panicked<T>(
 /// Whether the lamps light an overlay as they light the paper: a photograph in another band
 /// is paper, a category or a value is a sign.
 pub fn is_lit(kind: &OverlayKind) -> bool {
-    matches!(kind, OverlayKind::Picture(_))
+    kind.is_lit()
 }
 
 #[cfg(test)]

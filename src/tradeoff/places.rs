@@ -67,7 +67,13 @@ fn key(map: &MapUse) -> String {
         MapUse::OtherAlbedo(colour) => return key(&MapUse::Albedo(colour.clone())),
         map => map.role(),
     };
-    format!("{role} {}", map.file().path.display())
+    if let MapUse::Overlay(overlay) = map {
+        return format!("{role} {}", overlay.id);
+    }
+    let file = map.file();
+    // Of one exhibit, what bends a picture is told by where it is kept.
+    let warp = file.warp.as_ref().map(std::sync::Arc::as_ptr);
+    format!("{role} {} {warp:?}", file.path.display())
 }
 
 /// A side with its maps.

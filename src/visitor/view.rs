@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::lamp::LampPlace;
 use crate::manifest::exhibit::{
-    Camera, Comparison, Drawing, Enhancement, Exhibit, MAX_OVERLAYS, Scene, SideName,
+    Camera, Comparison, Drawing, Enhancement, Exhibit, MAX_OVERLAYS, OverlayKind, Scene, SideName,
 };
 
 /// Opacity of an overlay that the scene does not mention.
@@ -145,7 +145,8 @@ impl View {
             .collect()
     }
 
-    /// To the next choice: none of the side's overlays, each of them, all of them.
+    /// To the next choice: none of the side's overlays, each of them, all of them but the bands of
+    /// stacks, which would cover each other.
     pub fn step_overlay(&mut self, drawing: &Drawing) {
         let mut mine: Vec<&mut Layer> = self
             .layers
@@ -155,10 +156,15 @@ impl View {
         mine.sort_by_key(|layer| layer.overlay);
         let count = mine.len();
         let on: Vec<usize> = (0..count).filter(|&layer| mine[layer].on).collect();
+        // They stand behind the manifest's own.
+        let is_own = |layer: &&&mut Layer| {
+            !matches!(drawing.overlays[layer.overlay].kind, OverlayKind::Bands(_))
+        };
+        let own = mine.iter().filter(is_own).count();
         let next = match on[..] {
             [] => 0..count.min(1),
             [one] if one + 1 < count => one + 1..one + 2,
-            [_] if count > 1 => 0..count,
+            [_] if own > 1 => 0..own,
             _ => 0..0,
         };
         for (index, layer) in mine.into_iter().enumerate() {

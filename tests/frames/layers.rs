@@ -26,6 +26,12 @@ fn fixture() -> Fixture {
         legend = [ { colour = \"#d55e00\", label = \"Tear\" }, \
         { colour = \"#0072b2\", label = \"Stain\" } ]\n\
         register = { offset_mm = [16, 0] }\n\
+        [[drawing.stack]]\nid = \"light\"\nencoding = \"srgb\"\n\
+        bands = [ { file = \"dark.png\", wavelength_nm = 550 }, \
+        { file = \"band.png\", wavelength_nm = 850 } ]\n\
+        false_colour = [ { id = \"false\", red = { 850 = 1 }, green = { 550 = 1 }, \
+        blue = { 550 = 0.5 } } ]\n\
+        difference = [ { id = \"less\", of = [550, 850], full = 1 } ]\n\
         [[lamp]]\nid = \"lamp\"\nkind = \"distant\"\nlux_at_sheet = 1000\nkelvin = 6504\n\
         elevation_deg = 45\nazimuth_deg = 135\n\
         [[scene]]\nid = \"bare\"\ncamera = { centre_mm = [32, 32], width_mm = 64 }\n\
@@ -36,6 +42,13 @@ fn fixture() -> Fixture {
         [[scene]]\nid = \"band\"\nlike = \"bare\"\noverlays = [\"band\"]\n\
         [[scene]]\nid = \"moved\"\nlike = \"bare\"\noverlays = [\"moved\"]\n\
         [[scene]]\nid = \"both\"\nlike = \"bare\"\noverlays = [\"band\", \"damage\"]\n\
+        [[scene]]\nid = \"tears\"\nlike = \"bare\"\n\
+        overlays = [{ id = \"damage\", categories = [\"Tear\"] }]\n\
+        [[scene]]\nid = \"lit\"\nlike = \"bare\"\noverlays = [\"light/850\"]\n\
+        [[scene]]\nid = \"false\"\nlike = \"bare\"\noverlays = [\"light/false\"]\n\
+        [[scene]]\nid = \"less\"\nlike = \"bare\"\noverlays = [\"light/less\"]\n\
+        [[scene]]\nid = \"halves\"\nlike = \"bare\"\n\
+        compare = { mode = \"curtain\", of = [\"band:light/550\", \"band:light/850\"] }\n\
         [[scene]]\nid = \"clear\"\nlike = \"bare\"\noverlays = [{ id = \"damage\", opacity = 0 }]\n";
     let count = (SIDE * SIDE) as usize;
     Fixture::new(manifest, |folder| {
@@ -134,6 +147,74 @@ fn layers_lie_as_the_scene_says() {
 }
 
 #[test]
+fn a_category_that_is_switched_off_is_gone_from_picture_and_legend() {
+    let fixture = fixture();
+    let exhibit = fixture.exhibit();
+    let mut room = darkroom(1);
+    let mut shoot = |id: &str, size: [u32; 2]| -> Picture {
+        let (_, scene) = exhibit.scene(id).expect(id);
+        picture(&mut room, &exhibit, scene, Tier::Gallery, size)
+    };
+    let tears = shoot("tears", [SIDE, SIDE]);
+    assert!(close(pixel(&tears, 4, 32), linear_from_srgb8(TEAR)));
+    assert!(close(pixel(&tears, 60, 32), linear_from_srgb8([128; 3])));
+    let tears = shoot("tears", [640, 480]);
+    assert!(has_swatch(&tears, TEAR) && !has_swatch(&tears, STAIN));
+    let whole = shoot("whole", [640, 480]);
+    assert!(has_swatch(&whole, TEAR) && has_swatch(&whole, STAIN));
+}
+
+#[test]
+fn bands_of_a_stack_are_seen_as_the_scene_says() {
+    let fixture = fixture();
+    let exhibit = fixture.exhibit();
+    let mut room = darkroom(1);
+    let mut shoot = |id: &str| -> Picture {
+        let (_, scene) = exhibit.scene(id).expect(id);
+        picture(&mut room, &exhibit, scene, Tier::Gallery, [SIDE, SIDE])
+    };
+    let [dark, light] = [60, 200].map(|grey| linear_from_srgb8([grey; 3])[0]);
+    // Reflectance is lit like paper.
+    let lit = shoot("lit");
+    assert!(
+        close(pixel(&lit, 32, 32), [light; 3]),
+        "{:?}",
+        pixel(&lit, 32, 32)
+    );
+    let mixed = shoot("false");
+    let expected = [light, dark, 0.5 * dark];
+    assert!(
+        close(pixel(&mixed, 32, 32), expected),
+        "{:?}",
+        pixel(&mixed, 32, 32)
+    );
+    // A difference is a sign, whatever the lamp: less is blue.
+    let less = shoot("less");
+    let at = 0.5 + 0.5 * (dark - light);
+    let expected = recto::maps::ColourMapName::Diverging.colour(at);
+    let found = pixel(&less, 32, 32);
+    assert!(
+        close(found, expected) && found[2] > found[0],
+        "{found:?} {expected:?}"
+    );
+    // Against each other, as members of a comparison, whose legend names them.
+    let halves = shoot("halves");
+    assert!(close(pixel(&halves, 8, 32), [dark; 3]));
+    assert!(close(pixel(&halves, 56, 32), [light; 3]));
+    assert!(!halves.legend.is_empty());
+}
+
+const TEAR: [u8; 3] = [0xd5, 0x5e, 0x00];
+const STAIN: [u8; 3] = [0x00, 0x72, 0xb2];
+
+fn has_swatch(frame: &Picture, colour: [u8; 3]) -> bool {
+    let linear = linear_from_srgb8(colour);
+    frame.legend.iter().any(|texel| {
+        texel[3] > 0.99 && (0..3).all(|c| (f64::from(texel[c]) - linear[c]).abs() < 0.02)
+    })
+}
+
+#[test]
 fn a_legend_is_drawn_with_its_colours() {
     let fixture = fixture();
     let exhibit = fixture.exhibit();
@@ -141,12 +222,8 @@ fn a_legend_is_drawn_with_its_colours() {
     let (_, scene) = exhibit.scene("whole").expect("the scene");
     let frame = picture(&mut room, &exhibit, scene, Tier::Draft, [640, 480]);
     assert_eq!(frame.legend.len(), frame.pixels.len());
-    for colour in [[0xd5, 0x5e, 0x00], [0x00, 0x72, 0xb2]] {
-        let linear = linear_from_srgb8(colour);
-        let found = frame.legend.iter().any(|texel| {
-            texel[3] > 0.99 && (0..3).all(|c| (f64::from(texel[c]) - linear[c]).abs() < 0.02)
-        });
-        assert!(found, "no swatch of {colour:?}");
+    for colour in [TEAR, STAIN] {
+        assert!(has_swatch(&frame, colour), "no swatch of {colour:?}");
     }
     // It stands in a corner, and leaves the sheet alone elsewhere.
     assert!(frame.legend[0][3] == 0.0);

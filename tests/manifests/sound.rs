@@ -5,9 +5,10 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use recto::{
     manifest::{
-        CompareMode, Exhibit, FlipAxis, LampColour, LampKind, MediaContent, Member, OverlayKind,
-        SideName, Source, Surface, check_shape, create,
+        BandMix, CompareMode, Exhibit, FlipAxis, LampColour, LampKind, MediaContent, Member,
+        OverlayKind, SideName, Source, Surface, check_shape, create, readout::Reading,
     },
+    maps::registration::FitKind,
     optics::medium::{Matter, MediumId, Preset},
     units::{Candela, Degrees, Kelvin, Lux, Nits},
 };
@@ -387,6 +388,174 @@ fn one_control_point_moves_two_turn_and_three_stretch() {
         stretched.transform_point2(DVec2::new(50.0, 100.0)),
         DVec2::new(0.5, 1.0),
     );
+}
+
+/// Corners of the sheet of 200 × 100 mm in a picture of 20 × 10 pixels.
+const CORNERS: &str = "{ picture = [0, 0], sheet_mm = [0, 0] }, \
+    { picture = [20, 0], sheet_mm = [200, 0] }, { picture = [20, 10], sheet_mm = [200, 100] }, \
+    { picture = [0, 10], sheet_mm = [0, 100] }";
+
+#[test]
+fn how_well_control_points_agree_is_known() {
+    let registered = |more: &str| read(&format!("{SMALL}{more}")).registered;
+    assert_eq!(registered(""), []);
+    let [turned] = &registered("recto.register = { rotate_deg = 1 }\n")[..] else {
+        panic!("one picture")
+    };
+    assert_eq!((turned.fit, turned.residual), (None, None));
+
+    // The last corner is read 1 pixel, which is 10 mm, too far to the right: an affine fit leaves a
+    // quarter of it at each corner, and the three others alone miss it by all of it.
+    let points = CORNERS.replace("[0, 10], sheet", "[1, 10], sheet");
+    let points = format!("recto.control_points = [{points}]\n");
+    let [stretched] = &registered(&points)[..] else {
+        panic!("one picture")
+    };
+    assert_eq!(stretched.fit, Some(FitKind::Affine));
+    assert_eq!(stretched.points, 4);
+    assert_eq!(stretched.place, "drawing[0].recto");
+    let residual = stretched.residual.unwrap();
+    assert!((residual.rms_mm - 2.5).abs() < 0.1, "{residual:?}");
+    let left_out = stretched.left_out.unwrap();
+    assert!((left_out.largest_mm - 10.0).abs() < 0.6, "{left_out:?}");
+    let fits = "recto.fit = \"similarity\"\n";
+    let similar = &registered(&format!("{fits}{points}"))[0];
+    assert_eq!(similar.fit, Some(FitKind::Similarity));
+    assert!(similar.residual.unwrap().rms_mm > 1.1 * residual.rms_mm);
+
+    let plate = "recto.fit = \"thin-plate\"\n";
+    let exhibit = read(&format!("{SMALL}{plate}{points}"));
+    let residual = exhibit.registered[0].residual.unwrap();
+    assert!(residual.largest_mm < 1e-6, "{residual:?}");
+    // It lies like a picture that just covers the sheet.
+    let file = &exhibit.drawings[0].recto.albedo.file;
+    assert!(file.warp.is_some());
+    let corner = file.uv_from_side.transform_point2(DVec2::new(200.0, 100.0));
+    assert!((corner - DVec2::ONE).length() < 1e-9, "{corner}");
+}
+
+#[test]
+fn a_stack_is_its_bands_and_what_is_made_of_them() {
+    let exhibit = read(&format!(
+        "{SMALL}[[drawing.overlay]]\nid = \"map\"\nfile = \"recto.png\"\nkind = \"picture\"\n\
+         [[drawing.stack]]\nid = \"light\"\ntitle = {{ en = \"Light\", it = \"Luce\" }}\n\
+         bands = [ {{ file = \"grey.png\", wavelength_nm = 850.5 }}, \
+         {{ file = \"recto.png\", wavelength_nm = 550 }}, \
+         {{ file = \"small.png\", wavelength_nm = 450, control_points = [{CORNERS}], \
+         fit = \"thin-plate\" }} ]\n\
+         false_colour = [ {{ id = \"ir\", red = {{ \"850.5\" = 1 }}, green = {{ 550 = 0.5, 450 = 0.5 }}, \
+         blue = {{ 550 = 1 }} }} ]\n\
+         difference = [ {{ id = \"ink\", of = [850.5, 550], full = 0.25 }} ]\n\
+         [[scene]]\nid = \"one\"\noverlays = [\"light/450\", {{ id = \"light/ink\", opacity = 0.5 }}]\n\
+         compare = {{ mode = \"curtain\", of = [\"band:light/850.5\", \"overlay:light/ir\"] }}\n"
+    ));
+    let drawing = &exhibit.drawings[0];
+    let ids: Vec<&str> = drawing
+        .overlays
+        .iter()
+        .map(|overlay| &*overlay.id)
+        .collect();
+    let expected = [
+        "map",
+        "light/850.5",
+        "light/550",
+        "light/450",
+        "light/ir",
+        "light/ink",
+    ];
+    assert_eq!(ids, expected);
+    let wavelengths = drawing.stacks[0]
+        .bands
+        .iter()
+        .map(|band| band.wavelength_nm);
+    assert_eq!(wavelengths.collect::<Vec<_>>(), [450.0, 550.0, 850.5]);
+    let scene = &exhibit.scenes[0];
+    assert_eq!(scene.overlays, [(3, 1.0), (5, 0.5)]);
+    let members = &scene.compare.as_ref().unwrap().of;
+    assert_eq!(members[..], [Member::Overlay(1), Member::Overlay(4)]);
+    let OverlayKind::Bands(view) = &drawing.overlays[4].kind else {
+        panic!("{:?}", drawing.overlays[4])
+    };
+    // By rising wavelength: what each gives to red, green and blue.
+    let weights = vec![[0.0, 0.5, 0.0], [0.0, 0.5, 1.0], [1.0, 0.0, 0.0]];
+    assert_eq!(view.mix, BandMix::Colour(weights));
+    let words = "red 850.5 nm, green 0.5 × 450 nm + 0.5 × 550 nm, blue 550 nm";
+    assert_eq!(view.words(), words);
+    assert!(drawing.overlays[4].kind.is_lit() && !drawing.overlays[5].kind.is_lit());
+    let title = &drawing.overlays[3].title;
+    assert_eq!(title.in_language("it", &[]), Some("Luce, 450 nm"));
+    // One band is registered by points of its own.
+    assert_eq!(exhibit.registered[0].place, "drawing[0].stack[0].bands[2]");
+    // The picture of the sheet, the overlay, which is the same file, and the bands.
+    assert_eq!(drawing.maps().count(), 5);
+}
+
+#[test]
+fn a_place_has_a_value_in_every_layer() {
+    let exhibit = read(&format!(
+        "{SMALL}[[drawing.overlay]]\nid = \"map\"\nfile = \"recto.png\"\nkind = \"categorical\"\n\
+         legend = [ {{ colour = \"#d55e00\", label = \"Tear\" }}, \
+         {{ id = \"paper\", colour = \"#c8beaa\", label = \"Paper\" }} ]\n\
+         [[drawing.overlay]]\nid = \"wet\"\nfile = \"recto.png\"\nkind = \"continuous\"\n\
+         unit = \"%\"\nrange = [10, 20]\nregister = {{ offset_mm = [100, 0] }}\n\
+         [[drawing.stack]]\nid = \"light\"\nencoding = \"linear\"\n\
+         bands = [ {{ file = \"recto.png\", wavelength_nm = 850 }}, \
+         {{ file = \"grey.png\", wavelength_nm = 550 }} ]\n\
+         difference = [ {{ id = \"ink\", of = [850, 550] }} ]\n"
+    ));
+    let drawing = &exhibit.drawings[0];
+    let at = |x: f64| {
+        drawing
+            .readings(SideName::Recto, DVec2::new(x, 50.0))
+            .unwrap()
+    };
+    let readings = at(150.0);
+    let Some(Reading::Category(entry)) = &readings[0].1 else {
+        panic!("{readings:?}")
+    };
+    assert_eq!(entry.name(), "paper");
+    let Some(Reading::Quantity { value, unit: "%" }) = readings[1].1 else {
+        panic!("{readings:?}")
+    };
+    close(value, 10.0 + 10.0 * 200.0 / 255.0);
+    // The picture is shifted: nothing of it lies here.
+    assert_eq!(at(50.0)[1].1, None);
+    // The luminance of (200, 190, 170) in linear light, by Rec. 709.
+    let light = (0.2126 * 200.0 + 0.7152 * 190.0 + 0.0722 * 170.0) / 255.0;
+    let Some(Reading::Difference(difference)) = readings[2].1 else {
+        panic!("{readings:?}")
+    };
+    assert!((difference - light).abs() < 1e-4, "{difference} {light}");
+    let curve = drawing.stacks[0].curve(DVec2::new(150.0, 50.0)).unwrap();
+    assert_eq!(
+        curve.iter().map(|p| p.wavelength_nm).collect::<Vec<_>>(),
+        [550.0, 850.0]
+    );
+    assert_eq!(curve[0].reflectance, Some(0.0));
+    assert!((curve[1].reflectance.unwrap() - light).abs() < 1e-4);
+}
+
+#[test]
+fn categories_are_chosen_by_id_or_label() {
+    let exhibit = read(&format!(
+        "{SMALL}[[drawing.overlay]]\nid = \"map\"\nfile = \"recto.png\"\nkind = \"categorical\"\n\
+         legend = [ {{ id = \"tear\", colour = \"#d55e00\", label = \"A tear\" }}, \
+         {{ colour = \"#0072b2\", label = {{ en = \"Stain\", it = \"Macchia\" }} }}, \
+         {{ colour = \"#000000\", label = \"Hole\" }} ]\n\
+         [[scene]]\nid = \"all\"\noverlays = [\"map\"]\n\
+         [[scene]]\nid = \"some\"\n\
+         overlays = [{{ id = \"map\", categories = [\"Macchia\", \"tear\", \"Stain\"] }}]\n"
+    ));
+    let drawing = &exhibit.drawings[0];
+    let shown = |scene: usize| -> Vec<String> {
+        let (overlay, _) = &exhibit.scenes[scene].laid(drawing)[0];
+        let OverlayKind::Categorical(legend) = &overlay.kind else {
+            panic!("{overlay:?}")
+        };
+        legend.iter().map(|entry| entry.name().to_owned()).collect()
+    };
+    assert_eq!(shown(0), ["tear", "Stain", "Hole"]);
+    assert_eq!(shown(1), ["tear", "Stain"]);
 }
 
 #[test]

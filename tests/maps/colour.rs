@@ -199,6 +199,14 @@ fn colour_maps_rise_in_lightness() {
         assert_eq!(map.colour(f64::NAN), map.colour(0.0));
         assert_eq!(map.colour(9.0), map.colour(1.0));
     }
+    // Less and more of a signed value are as dark as each other, step by step.
+    let diverging = recto::maps::ColourMapName::Diverging;
+    let lightness = |share: f64| colour::lab_from_linear(diverging.colour(share))[0];
+    for i in 0..500 {
+        let [left, right] = [i, 1000 - i].map(|i| lightness(f64::from(i) / 1000.0));
+        assert!((left - right).abs() < 3.0, "{i}: {left} {right}");
+        assert!(left < lightness(f64::from(i + 1) / 1000.0), "{i}");
+    }
     assert_eq!(
         colour::srgb8_from_linear(Viridis.colour(0.0)),
         [0x44, 0x01, 0x54]

@@ -24,6 +24,7 @@ fn grey(folder: &Path, name: &str, size: [u32; 2], value: impl Fn(usize) -> u8) 
 fn layer<T>(path: &Path, each: impl IntoIterator<Item = T>) -> MediaLayer<T> {
     MediaLayer {
         path: path.to_owned(),
+        warp: None,
         channels: Weights(each.into_iter().collect()),
     }
 }
@@ -96,6 +97,7 @@ fn media_of_one_map_lie_side_by_side() {
     near(texel(&shares, 0, 1), [third, third, third, 0.0]);
     let named = MediaLayer {
         path,
+        warp: None,
         channels: Legend(vec![([51, 102, 0], Particles(1)), ([9, 9, 9], Film)]),
     };
     let shares = first(&[named]);

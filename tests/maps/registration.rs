@@ -81,3 +81,132 @@ fn degenerate_points_say_why() {
     let mirrored = points(DAffine2::from_scale(dvec2(-1.0, 1.0)), &square);
     assert_eq!(similarity(&mirrored), Err(RegistrationError::NoSimilarity));
 }
+
+const SHEET: DVec2 = dvec2(200.0, 100.0);
+/// Pixels of the bent picture in a millimetre.
+const PX_PER_MM: f64 = 4.0;
+/// How far a plate of 9 × 5 points may leave the bend standing, in mm: between points 25 mm apart a
+/// wave of 120 mm departs from the spline by some hundredths.
+const UNDONE_MM: f64 = 0.1;
+/// How far the sheet is bent, in mm.
+const BENT_MM: f64 = 3.0;
+
+/// Where a place of the sheet lies in a picture of it bent in a wave, in pixels.
+fn bent(mm: DVec2) -> DVec2 {
+    let wave = |v: f64| BENT_MM * (v * std::f64::consts::TAU / 120.0).sin();
+    (mm + dvec2(wave(mm.y), wave(mm.x) * 0.5) + 6.0) * PX_PER_MM
+}
+
+/// A picture of the sheet with dots at `dots` and a grey ground.
+fn picture(path: &std::path::Path, dots: &[DVec2]) -> [u32; 2] {
+    let size = (SHEET + 12.0) * PX_PER_MM;
+    let [width, height] = [size.x as u32, size.y as u32];
+    let mut pixels = vec![230_u8; (width * height) as usize];
+    for (i, value) in pixels.iter_mut().enumerate() {
+        let at = dvec2(
+            (i as u32 % width) as f64 + 0.5,
+            (i as u32 / width) as f64 + 0.5,
+        );
+        let near = dots.iter().map(|dot| bent(*dot).distance(at));
+        let near = near.fold(f64::INFINITY, f64::min);
+        *value = (30.0 + 200.0 * (near / 6.0).min(1.0)) as u8;
+    }
+    recto::maps::encode::save_png_grey8(path, width, height, &pixels, None).expect("written");
+    [width, height]
+}
+
+/// Centres of darkness within 3 mm of `mm`, in mm, in a map that covers the sheet.
+fn dot_near(map: &recto::maps::Pyramid, uv_from_side: DAffine2, mm: DVec2) -> DVec2 {
+    let level = &map.levels[0];
+    let size = dvec2(level.width.into(), level.height.into());
+    let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
+    for y in 0..level.height {
+        for x in 0..level.width {
+            let uv = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5) / size;
+            let at = uv_from_side.inverse().transform_point2(uv);
+            if at.distance(mm) < 3.0 {
+                let i = (y * level.width + x) as usize * usize::from(map.channels);
+                let dark = 0.79 - f64::from(level.texels.get(i).expect("a texel"));
+                if dark > 0.0 {
+                    sum += at * dark;
+                    weight += dark;
+                }
+            }
+        }
+    }
+    sum / weight
+}
+
+#[test]
+fn a_plate_undoes_a_known_bend_where_the_map_is_loaded() {
+    use recto::maps::{
+        ColourEncoding, Placed, load_colour,
+        registration::{FitKind, Fitted},
+    };
+    let folder = super::folder();
+    let path = folder.path().join("bent.png");
+    let dots = [
+        dvec2(37.0, 31.0),
+        dvec2(100.0, 50.0),
+        dvec2(163.0, 70.0),
+        dvec2(88.0, 88.0),
+    ];
+    let pixels = picture(&path, &dots);
+    let points: Vec<ControlPoint> = (0..45)
+        .map(|i| dvec2(f64::from(i % 9) * 25.0, f64::from(i / 9) * 25.0))
+        .map(|mm| (bent(mm), mm))
+        .collect();
+    let worst = |fit: FitKind| {
+        let fitted = Fitted::new(&points, Some(fit), pixels, SHEET).expect("a fit");
+        let file = Placed {
+            path: &path,
+            warp: fitted.warp.as_deref(),
+        };
+        let map = load_colour(file, ColourEncoding::Srgb).expect("read");
+        dots.iter()
+            .map(|&dot| dot_near(&map, fitted.uv_from_side, dot).distance(dot))
+            .fold(0.0, f64::max)
+    };
+    let undone = worst(FitKind::ThinPlate);
+    assert!(undone < UNDONE_MM, "{undone} mm");
+    // Without bending it is far off, so this is not trivially passed.
+    let straight = worst(FitKind::Affine);
+    assert!(straight > 5.0 * UNDONE_MM, "{straight} mm");
+}
+
+#[test]
+fn a_bent_normal_turns_with_its_picture() {
+    use recto::maps::{
+        NormalY, Placed, encode, load_normal, normal_coding,
+        registration::{FitKind, Fitted},
+    };
+    let folder = super::folder();
+    let path = folder.path().join("normal.png");
+    // All of it leans to the right by 30°.
+    let lean = [128 + 63, 128, 237];
+    encode::save_png_rgb8(&path, 80, 160, &[lean; 80 * 160], None).expect("written");
+    // The picture lies on its side: its right is the sheet's up.
+    let points: Vec<ControlPoint> = [
+        (0.0, 0.0),
+        (200.0, 0.0),
+        (0.0, 100.0),
+        (200.0, 100.0),
+        (100.0, 50.0),
+    ]
+    .map(|(x, y)| (dvec2(80.0 - y * 0.8, x * 0.8), dvec2(x, y)))
+    .to_vec();
+    let fit = Some(FitKind::ThinPlate);
+    let fitted = Fitted::new(&points, fit, [80, 160], SHEET).expect("a fit");
+    let file = Placed {
+        path: &path,
+        warp: fitted.warp.as_deref(),
+    };
+    let map = load_normal(file, NormalY::Up).expect("read");
+    let texels = &map.levels[0].texels;
+    let coding = normal_coding(texels);
+    let middle = (map.levels[0].width * (map.levels[0].height / 2) + 20) as usize * 4;
+    let [x, y] = [0, 1].map(|c| {
+        coding.scale * f64::from(texels.get(middle + c).expect("a texel")) + coding.offset
+    });
+    assert!(x.abs() < 0.02 && (y - 0.5).abs() < 0.02, "{x} {y}");
+}

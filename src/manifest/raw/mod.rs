@@ -7,6 +7,7 @@
 pub mod lamp;
 pub mod medium;
 pub mod scene;
+pub mod stack;
 pub mod values;
 
 use super::{
@@ -15,7 +16,7 @@ use super::{
     macros::{kinds, record},
 };
 use crate::{
-    maps::{ColourEncoding, ColourMapName, MAX_WEIGHTS, NormalY},
+    maps::{ColourEncoding, ColourMapName, MAX_WEIGHTS, NormalY, registration::FitKind},
     optics::medium::Preset,
 };
 pub use lamp::RawLamp;
@@ -26,6 +27,7 @@ pub use scene::{
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
+pub use stack::{RawBand, RawDifference, RawFalseColour, RawStack};
 use values::{
     Alpha, BackwardCosine, ChainLinesMm, DateText, DeltaE, FilePath, ForwardCosine, Fraction,
     FrameMs, HexColour, Id, Language, MediumName, OffsetMm, PaperName, PixelPx, PlaceMm, Quantity,
@@ -119,6 +121,9 @@ record! {
             state: List<RawState>,
             /// Thematic maps laid over the sheet, each below its own `[[drawing.overlay]]`.
             overlay: List<RawOverlay>,
+            /// Sets of pictures in several bands of light, each below its own
+            /// `[[drawing.stack]]`.
+            stack: List<RawStack>,
             /// Places that lead to a scene, each below its own `[[drawing.hotspot]]`.
             hotspot: List<RawHotspot>,
         }
@@ -208,11 +213,18 @@ record! {
             /// Points of the maps and where they lie on the sheet; one shifts the maps, two turn
             /// and scale them too, three or more also stretch them.
             control_points: List<RawControlPoint, 1, 1000>,
+            /// What the points do: shift, similarity (also turn and scale), affine (also stretch)
+            /// or thin-plate (also bend, so that every point lies where it was found). Without
+            /// it: by their number, and never bend.
+            fit: FitKind,
             /// Where the maps come from, for each that does not say so itself. Without it:
             /// assumed.
             source: Source,
         }
-        rules [Rule::AtMostOne(&["roughness", "gloss"])]
+        rules [
+            Rule::AtMostOne(&["roughness", "gloss"]),
+            Rule::Needs("fit", "control_points"),
+        ]
     }
 }
 
@@ -427,10 +439,16 @@ record! {
             register: RawRegister,
             /// Points of the picture and where they lie on the sheet.
             control_points: List<RawControlPoint, 1, 1000>,
+            /// What the points do: shift, similarity, affine or thin-plate. Without it: by their
+            /// number, and never bend.
+            fit: FitKind,
             /// Where it comes from. Without it: assumed.
             source: Source,
         }
-        rules [Rule::AtMostOne(&["register", "control_points"])]
+        rules [
+            Rule::AtMostOne(&["register", "control_points"]),
+            Rule::Needs("fit", "control_points"),
+        ]
     }
 }
 
@@ -467,7 +485,10 @@ record! {
             /// What it is.
             label: RawWording,
         }
-        optional {}
+        optional {
+            /// The name by which scenes switch it on. Without it: its label.
+            id: Id,
+        }
         rules []
     }
 }

@@ -10,8 +10,8 @@ use super::{
     },
     RawWording,
     values::{
-        DeltaE, DistanceMm, Exaggeration, Fraction, Id, LampLux, Language, Level, Magnification,
-        MemberText, PlaceMm, RoomLux, Seconds, Temperature, TiltDeg, TurnDeg, ViewMm,
+        DeltaE, DistanceMm, Exaggeration, Fraction, Id, LampLux, Language, LayerName, Level, Magnification,
+        MemberText, PlaceMm, RoomLux, Seconds, Temperature, Text, TiltDeg, TurnDeg, ViewMm,
     },
 };
 use crate::units::Degrees;
@@ -37,8 +37,9 @@ record! {
             /// The id of the state of conservation, or none for the sheet as its sides describe
             /// it.
             state: Id,
-            /// The overlays, from the lowest: their ids, or tables with an opacity.
-            overlays: List<Brief<Id, RawShownOverlay>, 0, MAX_OVERLAYS>,
+            /// What lies over the sheet, from the lowest: ids of overlays, bands (STACK/700) and
+            /// views (STACK/ID) of stacks, or tables with an opacity.
+            overlays: List<Brief<LayerName, RawShownOverlay>, 0, MAX_OVERLAYS>,
             /// What is shown against each other.
             compare: RawCompare,
             /// Where the eye is. Without it: above the whole sheet.
@@ -65,12 +66,15 @@ record! {
     /// An overlay on a scene.
     pub struct RawShownOverlay {
         required {
-            /// The id of the overlay.
-            id: Id,
+            /// The id of the overlay, or STACK/700 or STACK/ID of a stack.
+            id: LayerName,
         }
         optional {
             /// How opaque it lies there, 0 to 1. Without it: 1.
             opacity: Fraction,
+            /// Of an overlay of categories, the ids of those that are shown, or their labels where
+            /// they have none. Without it: all.
+            categories: List<Text, 1, 256>,
         }
         rules []
     }
@@ -82,7 +86,8 @@ record! {
         required {
             /// How the members are shown against each other.
             mode: CompareMode,
-            /// The members, such as state:before, side:verso, overlay:damage, drawing:landscape.
+            /// The members, such as state:before, side:verso, overlay:damage, band:stack/700,
+            /// drawing:landscape.
             of: List<MemberText, 2, 8>,
         }
         optional {

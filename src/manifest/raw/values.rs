@@ -11,7 +11,7 @@ use super::super::{
     macros::{choice, number, pattern},
 };
 use crate::{
-    maps::{ColourEncoding, ColourMapName, NormalY},
+    maps::{ColourEncoding, ColourMapName, NormalY, registration::FitKind},
     optics::medium::{MediumId, MediumKind, Preset},
     optics::spectrum::Illuminant,
 };
@@ -63,6 +63,10 @@ number! {
     LampNits = 0.000001 ..= 1000000000.0, "cd/m²";
     /// A wavelength of light.
     WavelengthNm = 10.0 ..= 100000.0, "nm";
+    /// A middle of a band that a camera sees the sheet in: X-rays are shorter, thermography longer.
+    BandNm = 100.0 ..= 20000.0, "nm";
+    /// A weight of a band.
+    Weight = -100.0 ..= 100.0, "";
     /// A spectral power in any unit.
     SpectralPower = 0.0 ..= 1000000000.0, "";
     /// A correlated colour temperature.
@@ -163,6 +167,12 @@ pub(crate) trait Choice: Copy + 'static {
 choice! {
     SideName { Recto = "recto", Verso = "verso", }
     Source { Measured = "measured", Fitted = "fitted", Assumed = "assumed", }
+    FitKind {
+        Shift = "shift",
+        Similarity = "similarity",
+        Affine = "affine",
+        ThinPlate = "thin-plate",
+    }
     FlipAxis { Vertical = "horizontal", Horizontal = "vertical", }
     CompareMode {
         Curtain = "curtain",
@@ -206,7 +216,13 @@ choice! {
     }
     NormalY { Up = "up", Down = "down", }
     Preset { Recto = "recto", Isle2021 = "isle-2021", }
-    ColourMapName { Viridis = "viridis", Magma = "magma", Cividis = "cividis", Grey = "grey", }
+    ColourMapName {
+        Viridis = "viridis",
+        Magma = "magma",
+        Cividis = "cividis",
+        Grey = "grey",
+        Diverging = "diverging",
+    }
 }
 
 pub(crate) fn choice_allowed<T: Choice>() -> String {
@@ -258,10 +274,18 @@ pattern! {
     DateText = "^[0-9]{4}(-(0[1-9]|1[0-2])(-(0[1-9]|[12][0-9]|3[01]))?)?$", is_date,
         "a date as \"YYYY\", \"YYYY-MM\" or \"YYYY-MM-DD\"",
         "write it in quotation marks, year first";
+    /// A wavelength as the key of a table.
+    BandKey = "^[0-9]{1,9}([.][0-9]{1,9})?$", is_band_key,
+        "a wavelength in nm",
+        "write the wavelength of a band in nm, such as 700";
+    /// What lies over a side: an overlay, or what is shown of a stack.
+    LayerName = "^[A-Za-z0-9][A-Za-z0-9_-]{0,63}(/[A-Za-z0-9][A-Za-z0-9_.-]{0,63})?$", is_layer,
+        "the id of an overlay, or STACK/NM or STACK/ID of a stack",
+        "write its id, and for a stack the wavelength of a band or the id of a view behind a /";
     /// A member of a comparison.
-    MemberText = "^(state|overlay|drawing):[A-Za-z0-9][A-Za-z0-9_-]{0,63}$|^side:(recto|verso)$",
+    MemberText = "^(state|drawing):[A-Za-z0-9][A-Za-z0-9_-]{0,63}$|^side:(recto|verso)$|^overlay:[A-Za-z0-9][A-Za-z0-9_-]{0,63}(/[A-Za-z0-9][A-Za-z0-9_.-]{0,63})?$|^band:[A-Za-z0-9][A-Za-z0-9_-]{0,63}/[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$",
         is_member,
-        "\"state:ID\", \"side:recto\", \"side:verso\", \"overlay:ID\" or \"drawing:ID\"",
+        "\"state:ID\", \"side:recto\", \"side:verso\", \"overlay:ID\", \"band:STACK/NM\" or \"drawing:ID\"",
         "write what it is, a colon and its id";
 }
 
@@ -331,8 +355,29 @@ fn is_date(text: &str) -> bool {
 fn is_member(text: &str) -> bool {
     match text.split_once(':') {
         Some(("side", side)) => matches!(side, "recto" | "verso"),
-        Some(("state" | "overlay" | "drawing", id)) => is_id(id),
+        Some(("state" | "drawing", id)) => is_id(id),
+        Some(("overlay", id)) => is_layer(id),
+        Some(("band", id)) => id.contains('/') && is_layer(id),
         _ => false,
+    }
+}
+
+fn is_layer(text: &str) -> bool {
+    match text.split_once('/') {
+        None => is_id(text),
+        // Wavelengths may have decimals.
+        Some((stack, view)) => {
+            is_id(stack) && !view.starts_with('.') && is_id(&view.replace('.', "-"))
+        }
+    }
+}
+
+fn is_band_key(text: &str) -> bool {
+    let digits =
+        |text: &str| (1..=9).contains(&text.len()) && text.chars().all(|c| c.is_ascii_digit());
+    match text.split_once('.') {
+        None => digits(text),
+        Some((whole, part)) => digits(whole) && digits(part),
     }
 }
 
@@ -414,6 +459,7 @@ mod tests {
     fn words_are_written_as_they_are_read() {
         same_words::<SideName>();
         same_words::<Source>();
+        same_words::<FitKind>();
         same_words::<FlipAxis>();
         same_words::<CompareMode>();
         same_words::<ColourEncoding>();
@@ -440,6 +486,8 @@ mod tests {
         agrees::<HexColour>(text);
         agrees::<DateText>(text);
         agrees::<MemberText>(text);
+        agrees::<BandKey>(text);
+        agrees::<LayerName>(text);
     }
 
     #[test]
@@ -463,6 +511,15 @@ mod tests {
             "..",
             "a\u{7f}",
             "a\0",
+            "a/450.5",
+            "a/.5",
+            "a/b/c",
+            "450",
+            "450.",
+            "450.5",
+            "band:a/450",
+            "band:a",
+            "overlay:a/450.5",
             "#abcdef",
             "#ABCDE",
             "#abcdeg",

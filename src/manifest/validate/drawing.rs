@@ -1,5 +1,7 @@
 //! Drawings: paper, shape, sides, states, overlays and hotspots.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 
 use super::{
@@ -8,7 +10,7 @@ use super::{
         document::{Trail, Words},
         exhibit::{
             Drawing, FlipAxis, HeightMap, Hotspot, LegendEntry, MapFile, Overlay, OverlayKind,
-            Side, SideName, SidePatch, Source, State, Surface,
+            Side, SideName, SidePatch, Source, State, Surface, Wording,
         },
         raw::{
             RawCategorical, RawDrawing, RawHotspot, RawOverlay, RawOverlayKind, RawSide, RawState,
@@ -19,6 +21,7 @@ use super::{
     names::Names,
     placement::Placement,
     side::{Named, no_maps},
+    stack,
 };
 /// The word by which a scene asks for no state.
 pub(super) const NO_STATE: &str = "none";
@@ -69,6 +72,9 @@ impl Validator<'_, '_> {
             &trail.key("overlay"),
             |validator, raw, trail| validator.overlay(raw, trail, size_mm),
         );
+        let stacks = self.each(&raw.stack, &trail.key("stack"), |validator, raw, trail| {
+            validator.stack(raw, trail, size_mm)
+        });
         let hotspots = self.each(
             &raw.hotspot,
             &trail.key("hotspot"),
@@ -76,7 +82,12 @@ impl Validator<'_, '_> {
         );
         let facts = DrawingFacts::of(raw);
         self.unique(&facts.states, &trail.key("state"));
-        self.unique(&facts.overlays, &trail.key("overlay"));
+        self.unique(&facts.own_overlays, &trail.key("overlay"));
+        self.unique(&facts.stacks, &trail.key("stack"));
+        self.unique_views(raw, trail);
+        let (stacks, views): (Vec<_>, Vec<_>) = stacks?.into_iter().unzip();
+        let mut overlays = overlays?;
+        overlays.extend(views.into_iter().flatten());
         Some(Drawing {
             id: id.to_owned(),
             title: self.wording(raw.title.as_ref(), &trail.key("title")),
@@ -105,7 +116,8 @@ impl Validator<'_, '_> {
             flip: flip.unwrap_or(FlipAxis::Vertical),
             transmission,
             states: states?,
-            overlays: overlays?,
+            overlays,
+            stacks,
             hotspots: hotspots?,
         })
     }
@@ -150,6 +162,7 @@ impl Validator<'_, '_> {
         let placement = Placement {
             register: None,
             control_points: None,
+            fit: None,
             trail: &named.trail,
         };
         self.map_file(named, placement, size_mm, Source::Assumed)
@@ -228,6 +241,7 @@ impl Validator<'_, '_> {
         let placement = Placement {
             register: common.register.as_ref(),
             control_points: common.control_points.as_ref(),
+            fit: common.fit,
             trail,
         };
         let map = self.map_file(&named, placement, size_mm, Source::Assumed);
@@ -278,8 +292,18 @@ impl Validator<'_, '_> {
                 );
                 self.report.fault(&trail.key("colour"), words);
             }
+            let id = entry.id.as_ref().map(|id| id.as_str().to_owned());
+            if id.is_some() && entries.iter().any(|earlier| earlier.id == id) {
+                let words = Words::new(
+                    format!("the id \"{}\" a second time", id.unwrap_or_default()),
+                    "ids that differ",
+                    "rename one of the two",
+                );
+                self.report.fault(&trail.key("id"), words);
+                continue;
+            }
             let label = self.wording(Some(&entry.label), &trail.key("label"));
-            entries.push(LegendEntry { colour, label });
+            entries.push(LegendEntry { id, colour, label });
         }
         entries
     }
@@ -316,15 +340,42 @@ pub(super) struct DrawingFacts {
     pub size_mm: DVec2,
     pub has_verso: bool,
     pub states: Names,
+    own_overlays: Names,
+    stacks: Names,
+    /// Of its overlays, and behind them of what can be shown of its stacks.
     pub overlays: Names,
-    /// The side of each overlay by its index.
+    /// The side of each by its index.
     pub overlay_sides: Vec<(usize, SideName)>,
+    /// The legends of those that have one.
+    pub legends: Vec<(usize, Vec<LegendEntry>)>,
 }
 
 impl DrawingFacts {
     pub fn of(raw: &RawDrawing) -> Self {
         let states = raw.state.iter().flat_map(List::iter);
         let overlays = || raw.overlay.iter().flat_map(List::iter);
+        let stacks = || raw.stack.iter().flat_map(List::iter);
+        let own_overlays = Names::new(
+            "overlay of this drawing",
+            overlays().map(|(i, overlay)| (i, &overlay.common.id)),
+            raw.overlay.as_ref().is_some_and(List::has_holes),
+        );
+        let mut names: Vec<(usize, String)> = overlays()
+            .map(|(i, overlay)| (i, overlay.common.id.as_str().to_owned()))
+            .collect();
+        let mut overlay_sides: Vec<(usize, SideName)> = overlays()
+            .map(|(i, overlay)| (i, overlay.common.side.unwrap_or_default()))
+            .collect();
+        for (_, stack) in stacks() {
+            let (views, side) = stack::view_names(stack);
+            for name in views {
+                overlay_sides.push((names.len(), side));
+                names.push((names.len(), name));
+            }
+        }
+        let incomplete = own_overlays.is_incomplete()
+            || raw.stack.as_ref().is_some_and(List::has_holes)
+            || stacks().any(|(_, stack)| stack::has_holes(stack));
         Self {
             size_mm: DVec2::from(raw.size_mm.map(|mm| mm.0)),
             has_verso: raw.verso.is_some(),
@@ -333,14 +384,37 @@ impl DrawingFacts {
                 states.map(|(i, state)| (i, &state.id)),
                 raw.state.as_ref().is_some_and(List::has_holes),
             ),
-            overlays: Names::new(
-                "overlay of this drawing",
-                overlays().map(|(i, overlay)| (i, &overlay.common.id)),
-                raw.overlay.as_ref().is_some_and(List::has_holes),
+            own_overlays,
+            stacks: Names::new(
+                "stack of this drawing",
+                stacks().map(|(i, stack)| (i, &stack.id)),
+                raw.stack.as_ref().is_some_and(List::has_holes),
             ),
-            overlay_sides: overlays()
-                .map(|(i, overlay)| (i, overlay.common.side.unwrap_or_default()))
+            overlays: Names::of("overlay of this drawing", names, incomplete),
+            overlay_sides,
+            legends: overlays()
+                .filter_map(|(i, overlay)| match &overlay.kind {
+                    RawOverlayKind::Categorical(categorical) => Some((i, written(categorical))),
+                    RawOverlayKind::Continuous(_) | RawOverlayKind::Picture(_) => None,
+                })
                 .collect(),
         }
     }
+}
+
+/// A legend without its colours.
+fn written(raw: &RawCategorical) -> Vec<LegendEntry> {
+    let entries = raw.legend.iter().map(|(_, entry)| LegendEntry {
+        id: entry.id.as_ref().map(|id| id.as_str().to_owned()),
+        colour: [0; 3],
+        label: Wording(match &entry.label {
+            Brief::Short(text) => BTreeMap::from([(String::new(), text.as_str().to_owned())]),
+            Brief::Full(texts) => texts
+                .0
+                .iter()
+                .map(|(tag, text)| (tag.as_str().to_owned(), text.as_str().to_owned()))
+                .collect(),
+        }),
+    });
+    entries.collect()
 }

@@ -9,6 +9,7 @@ mod names;
 mod placement;
 mod scene;
 mod side;
+mod stack;
 mod wording;
 
 use std::path::{Path, PathBuf};
@@ -16,12 +17,13 @@ use std::path::{Path, PathBuf};
 use super::{
     decode::Report,
     document::Trail,
-    exhibit::{Accuracy, Exhibit, ResolvedMedium},
+    exhibit::{Accuracy, Exhibit, Registered, ResolvedMedium},
     raw::RawManifest,
 };
 use names::Names;
 
 pub(crate) use files::{PICTURE, map_words};
+pub(super) use scene::chosen;
 
 /// What all parts of the validation share.
 struct Validator<'r, 'd> {
@@ -37,6 +39,7 @@ struct Validator<'r, 'd> {
     media: Vec<ResolvedMedium>,
     /// Whether media are missing there because they are at fault.
     media_incomplete: bool,
+    registered: Vec<Registered>,
     not_shown_yet: Vec<String>,
 }
 
@@ -61,6 +64,7 @@ impl<'r, 'd> Validator<'r, 'd> {
             languages_declared: false,
             media: Vec::new(),
             media_incomplete: false,
+            registered: Vec::new(),
             not_shown_yet: Vec::new(),
         }
     }
@@ -127,6 +131,7 @@ impl Validator<'_, '_> {
                 max_delta_e: accuracy.and_then(|a| a.max_delta_e).map_or(1.0, |e| e.0),
                 frame_ms: accuracy.and_then(|a| a.frame_ms).map_or(16.0, |ms| ms.0),
             },
+            registered: std::mem::take(&mut self.registered),
             not_shown_yet: std::mem::take(&mut self.not_shown_yet),
         };
         self.near_lamps(&exhibit, &root.key("lamp"));

@@ -37,7 +37,7 @@ impl Names {
         Self::of(what, vec![(0, id.to_owned())], false)
     }
 
-    fn of(what: &'static str, ids: Vec<(usize, String)>, incomplete: bool) -> Self {
+    pub fn of(what: &'static str, ids: Vec<(usize, String)>, incomplete: bool) -> Self {
         // In reverse, so that of two with one id the first stays.
         let indices = ids
             .iter()

@@ -1,14 +1,23 @@
 //! How a picture lies on the sheet: by offset, turn and scale, or by control points.
 
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
 use glam::{DAffine2, DMat2, DVec2};
 
 use super::super::{
     decode::List,
     document::{Trail, Words},
+    exhibit::{MapFile, Registered, Source},
     raw::{RawControlPoint, RawRegister},
 };
 use super::Validator;
-use crate::maps::registration;
+use crate::maps::{
+    Warp,
+    registration::{FitKind, Fitted, RegistrationError},
+};
 
 /// How far a picture's proportions may be from the sheet's without a word: less than a scan
 /// loses at its edges.
@@ -19,40 +28,102 @@ const ASPECT_TOLERANCE: f64 = 0.02;
 pub(super) struct Placement<'p> {
     pub register: Option<&'p RawRegister>,
     pub control_points: Option<&'p List<RawControlPoint, 1, 1000>>,
-    /// Of the table that both are keys of.
+    pub fit: Option<FitKind>,
+    /// Of the table that these are keys of.
     pub trail: &'p Trail,
 }
 
+/// How a picture lies on a side.
+#[derive(Clone)]
+pub(super) struct Lie {
+    /// From the side's mm to texture coordinates.
+    pub uv_from_side: DAffine2,
+    /// Width and height in pixels, once it is bent.
+    pub size: [u32; 2],
+    pub warp: Option<Arc<Warp>>,
+}
+
+impl Lie {
+    /// A picture that lies so.
+    pub fn of(self, path: PathBuf, source: Source) -> MapFile {
+        MapFile {
+            path,
+            size: self.size,
+            uv_from_side: self.uv_from_side,
+            warp: self.warp,
+            source,
+        }
+    }
+}
+
+impl From<&MapFile> for Lie {
+    fn from(map: &MapFile) -> Self {
+        Self {
+            uv_from_side: map.uv_from_side,
+            size: map.size,
+            warp: map.warp.clone(),
+        }
+    }
+}
+
 impl Validator<'_, '_> {
-    /// The way from a side's mm to texture coordinates of a picture of `pixels` that lies on it;
-    /// `picture` is where the picture is named.
-    pub(super) fn uv_from_side(
+    /// How a picture of `pixels` lies on a side; `named` is where the picture is named, and
+    /// `file` what it is.
+    pub(super) fn lie(
         &mut self,
         placement: Placement<'_>,
         sheet_mm: DVec2,
         pixels: [u32; 2],
-        picture: &Trail,
-    ) -> Option<DAffine2> {
+        named: &Trail,
+        file: &Path,
+    ) -> Option<Lie> {
         let moved = placement.register.is_some_and(moves);
         if placement.control_points.is_none() && !moved {
-            self.warn_of_proportions(sheet_mm, vector(pixels), picture);
+            self.warn_of_proportions(sheet_mm, vector(pixels), named);
         }
         if let Some(points) = placement.control_points {
-            return self.by_points(points, sheet_mm, vector(pixels), placement.trail);
+            let fitted = self.by_points(points, placement, sheet_mm, pixels)?;
+            self.registered.push(Registered {
+                place: placement.trail.to_string(),
+                file: file.to_owned(),
+                fit: Some(fitted.fit),
+                points: fitted.residuals_mm.len(),
+                residual: fitted.residual(),
+                left_out: fitted.left_out(),
+            });
+            return Some(Lie {
+                uv_from_side: fitted.uv_from_side,
+                size: fitted.warp.as_ref().map_or(pixels, |warp| warp.size()),
+                warp: fitted.warp,
+            });
         }
-        Some(placement.register.map_or_else(
-            || DAffine2::from_scale(sheet_mm.recip()),
-            |register| by_register(register, sheet_mm),
-        ))
+        if moved {
+            self.registered.push(Registered {
+                place: placement.trail.to_string(),
+                file: file.to_owned(),
+                fit: None,
+                points: 0,
+                residual: None,
+                left_out: None,
+            });
+        }
+        Some(Lie {
+            uv_from_side: placement.register.map_or_else(
+                || DAffine2::from_scale(sheet_mm.recip()),
+                |register| by_register(register, sheet_mm),
+            ),
+            size: pixels,
+            warp: None,
+        })
     }
 
     fn by_points(
         &mut self,
         points: &List<RawControlPoint, 1, 1000>,
+        placement: Placement<'_>,
         sheet_mm: DVec2,
-        pixels: DVec2,
-        trail: &Trail,
-    ) -> Option<DAffine2> {
+        pixels: [u32; 2],
+    ) -> Option<Fitted> {
         let pairs: Vec<(DVec2, DVec2)> = points
             .iter()
             .map(|(_, point)| {
@@ -65,26 +136,35 @@ impl Validator<'_, '_> {
         if points.has_holes() {
             return None;
         }
-        let pixels_from_mm = match pairs[..] {
-            [(picture, mm)] => {
-                let scale = pixels / sheet_mm;
-                Ok(DAffine2::from_translation(picture - scale * mm) * DAffine2::from_scale(scale))
-            }
-            [_, _] => registration::similarity(&pairs).map(|fit| fit.px_from_mm),
-            _ => registration::affine(&pairs).map(|fit| fit.px_from_mm),
+        let error = match Fitted::new(&pairs, placement.fit, pixels, sheet_mm) {
+            Ok(fitted) => return Some(fitted),
+            Err(error) => error,
         };
-        match pixels_from_mm {
-            Ok(pixels_from_mm) => Some(DAffine2::from_scale(pixels.recip()) * pixels_from_mm),
-            Err(error) => {
-                let words = Words::new(
-                    format!("points that do not place the picture ({error})"),
-                    "points that lie apart and not on one line",
-                    "choose points near the corners",
-                );
-                self.report.fault(&trail.key("control_points"), words);
-                None
+        let trail = placement.trail.key("control_points");
+        let (trail, remedy) = match error {
+            RegistrationError::TooFew { .. } => (trail, "add points, or leave fit out"),
+            RegistrationError::Doubled { second, .. } => (
+                trail.index(second - 1),
+                "remove one of the two, or correct it",
+            ),
+            RegistrationError::Folded { near_mm } => {
+                let near = DVec2::from(near_mm.map(f64::from));
+                let nearest = (0..pairs.len()).min_by(|a, b| {
+                    let off = |i: usize| pairs[i].1.distance(near);
+                    off(*a).total_cmp(&off(*b))
+                });
+                let trail = nearest.map_or(trail.clone(), |i| trail.index(i));
+                (trail, "correct the points there, or leave fit out")
             }
-        }
+            _ => (trail, "choose points near the corners"),
+        };
+        let words = Words::new(
+            format!("points that do not place the picture ({error})"),
+            "points that lie apart and not on one line",
+            remedy,
+        );
+        self.report.fault(&trail, words);
+        None
     }
 
     fn warn_of_proportions(&mut self, sheet_mm: DVec2, pixels: DVec2, picture: &Trail) {

@@ -1,5 +1,7 @@
 //! Scenes, with what they take over from each other, and tours.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::DVec2;
 
 use super::{
@@ -7,14 +9,15 @@ use super::{
         decode::{Brief, List, Pattern},
         document::{Trail, Words},
         exhibit::{
-            Ambient, Camera, Comparison, Enhancement, Exposure, Member, Scene, SideName, Tour,
+            Ambient, Camera, Comparison, Enhancement, Exposure, LegendEntry, Member, Scene, SideName, Tour,
         },
+        fault::{did_you_mean, quote, quoted_list},
         raw::{
             RawManifest,
             scene::{
                 RawAmbient, RawCamera, RawCompare, RawEnhance, RawExposure, RawScene, RawTour,
             },
-            values::{Choice, Id},
+            values::{Id, Text},
         },
     },
     Validator,
@@ -200,6 +203,7 @@ impl Validator<'_, '_> {
             None => Some(None),
         };
         let camera = self.camera(raw.camera.as_ref(), &trail.key("camera"), facts.size_mm);
+        let (overlays, categories) = overlays?;
         Some(Scene {
             id,
             title,
@@ -207,7 +211,8 @@ impl Validator<'_, '_> {
             drawing,
             side,
             state: state?,
-            overlays: overlays?,
+            overlays,
+            categories,
             compare: compare?,
             camera,
             lamps: lamps?,
@@ -273,14 +278,17 @@ impl Validator<'_, '_> {
         trail: &Trail,
         side: SideName,
         facts: &DrawingFacts,
-    ) -> Option<Vec<(usize, f64)>> {
-        let mut shown = Some(Vec::new());
+    ) -> Option<(Vec<(usize, f64)>, BTreeMap<usize, Vec<usize>>)> {
+        let mut shown = Some((Vec::<(usize, f64)>::new(), BTreeMap::new()));
         for (i, overlay) in raw.overlays.iter().flat_map(List::iter) {
-            let (id, opacity, trail) = match overlay {
-                Brief::Short(id) => (id, 1.0, trail.index(i)),
+            let (id, opacity, categories, trail) = match overlay {
+                Brief::Short(id) => (id, 1.0, None, trail.index(i)),
                 Brief::Full(full) => {
                     let opacity = full.opacity.map_or(1.0, |opacity| opacity.0);
-                    (&full.id, opacity, trail.index(i).key("id"))
+                    let categories = full.categories.as_ref();
+                    let categories =
+                        categories.map(|list| (list, trail.index(i).key("categories")));
+                    (&full.id, opacity, categories, trail.index(i).key("id"))
                 }
             };
             let Some(index) = self.resolve(id.as_str(), &facts.overlays, &trail) else {
@@ -298,7 +306,15 @@ impl Validator<'_, '_> {
                 );
                 self.report.fault(&trail, words);
             }
-            if let Some(shown) = &mut shown {
+            let categories = match categories {
+                None => Some(None),
+                Some((list, trail)) => self.shown_categories(list, &trail, index, facts).map(Some),
+            };
+            let Some(categories) = categories else {
+                shown = None;
+                continue;
+            };
+            if let Some((shown, of_each)) = &mut shown {
                 if shown.iter().any(|(earlier, _)| *earlier == index) {
                     let words = Words::new(
                         format!("\"{}\" a second time", id.as_str()),
@@ -308,9 +324,34 @@ impl Validator<'_, '_> {
                     self.report.fault(&trail, words);
                 }
                 shown.push((index, opacity));
+                of_each.extend(categories.map(|categories| (index, categories)));
             }
         }
         shown
+    }
+
+    /// Indices into the legend of the overlay `index`, in its order.
+    fn shown_categories(
+        &mut self,
+        list: &List<Text, 1, 256>,
+        trail: &Trail,
+        index: usize,
+        facts: &DrawingFacts,
+    ) -> Option<Vec<usize>> {
+        let of_overlay = facts.legends.iter().find(|(i, _)| *i == index);
+        let legend = of_overlay.map_or(&[][..], |(_, legend)| legend);
+        let mut indices = BTreeSet::new();
+        let mut complete = !list.has_holes();
+        for (i, name) in list.iter() {
+            match chosen(legend, name.as_str()) {
+                Ok(entry) => drop(indices.insert(entry)),
+                Err(words) => {
+                    self.report.fault(&trail.index(i), words);
+                    complete = false;
+                }
+            }
+        }
+        complete.then(|| indices.into_iter().collect())
     }
 
     fn comparison(
@@ -361,7 +402,8 @@ impl Validator<'_, '_> {
         let (kind, id) = text.split_once(':')?;
         match kind {
             "state" => self.resolve(id, &facts.states, trail).map(Member::State),
-            "overlay" => self
+            // What can be shown of a stack lies over the sheet as overlays do.
+            "overlay" | "band" => self
                 .resolve(id, &facts.overlays, trail)
                 .map(Member::Overlay),
             "drawing" => self
@@ -462,6 +504,26 @@ impl Validator<'_, '_> {
             stops: stops.into_iter().collect::<Option<_>>()?,
         })
     }
+}
+
+/// The entry of a legend that is called `name`.
+pub fn chosen(legend: &[LegendEntry], name: &str) -> Result<usize, Words> {
+    let found = legend.iter().position(|entry| entry.is_called(name));
+    found.ok_or_else(|| {
+        let names = || legend.iter().map(LegendEntry::name);
+        if legend.is_empty() {
+            return Words::new(
+                format!("the category {}", quote(name)),
+                "categories of an overlay that has some",
+                "leave categories out",
+            );
+        }
+        Words::new(
+            format!("the category {}", quote(name)),
+            quoted_list(names()),
+            did_you_mean(name, names(), "write one of these"),
+        )
+    })
 }
 
 fn ambient(raw: Option<&RawAmbient>) -> Ambient {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::{DAffine2, DVec2};
+use glam::DVec2;
 
 use super::{
     super::{
@@ -18,7 +18,7 @@ use super::{
         },
     },
     Validator,
-    placement::Placement,
+    placement::{Lie, Placement},
 };
 use crate::maps::{Header, MAX_WEIGHTS};
 
@@ -73,8 +73,9 @@ struct SideMaps<'v, 'r, 'd, 'p> {
 
 /// The map of a side that was read first: all others share its size and place.
 struct First {
-    size: [u32; 2],
-    uv_from_side: DAffine2,
+    /// Of the file.
+    pixels: [u32; 2],
+    lie: Lie,
     path: String,
 }
 
@@ -92,6 +93,7 @@ impl Validator<'_, '_> {
         let placement = Placement {
             register: raw.register.as_ref(),
             control_points: raw.control_points.as_ref(),
+            fit: raw.fit,
             trail,
         };
         if side == SideName::Recto || in_state {
@@ -143,17 +145,9 @@ impl Validator<'_, '_> {
         source: Source,
     ) -> Option<(MapFile, Header)> {
         let (path, header) = self.picture(named.file, &named.trail)?;
-        let uv_from_side = self.uv_from_side(placement, sheet_mm, header.size, &named.trail)?;
+        let lie = self.lie(placement, sheet_mm, header.size, &named.trail, &path)?;
         let source = named.source.unwrap_or(source);
-        Some((
-            MapFile {
-                path,
-                size: header.size,
-                uv_from_side,
-                source,
-            },
-            header,
-        ))
+        Some((lie.of(path, source), header))
     }
 
     /// Reports a range whose ends are one.
@@ -209,33 +203,28 @@ impl SideMaps<'_, '_, '_, '_> {
                 self.validator
                     .map_file(named, self.placement, self.sheet_mm, self.source)?;
             self.first = Some(First {
-                size: map.size,
-                uv_from_side: map.uv_from_side,
+                pixels: header.size,
+                lie: Lie::from(&map),
                 path: named.trail.to_string(),
             });
             return Some((map, header));
         };
         let (path, header) = self.validator.picture(named.file, &named.trail)?;
-        if header.size != first.size {
+        if header.size != first.pixels {
             let [width, height] = header.size;
             let words = Words::new(
                 format!("a picture of {width} × {height} pixels"),
                 format!(
                     "{} × {} pixels, as {} has",
-                    first.size[0], first.size[1], first.path
+                    first.pixels[0], first.pixels[1], first.path
                 ),
                 "bring all maps of one side to one size",
             );
             self.validator.report.fault(&named.trail, words);
             return None;
         }
-        let map = MapFile {
-            path,
-            size: first.size,
-            uv_from_side: first.uv_from_side,
-            source: named.source.unwrap_or(self.source),
-        };
-        Some((map, header))
+        let source = named.source.unwrap_or(self.source);
+        Some((first.lie.clone().of(path, source), header))
     }
 
     fn albedo(&mut self, raw: &Brief<FilePath, RawColourMap>, trail: &Trail) -> Option<ColourMap> {

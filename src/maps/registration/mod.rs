@@ -4,13 +4,18 @@
 //! |---|---|
 //! | shift, rotation and scale; any affine transform | [`similarity`], [`affine`] |
 //! | a transform that bends | [`plate`] |
+//! | the one that a picture's points ask for, with its residuals | [`Fitted`] |
 //! | control points found in two pictures of one sheet | [`propose`] |
 
 mod correlate;
+mod fitted;
 pub mod plate;
+mod prepared;
 pub mod propose;
 
 use glam::{DAffine2, DMat2, DVec2};
+
+pub use fitted::{FitKind, Fitted, Residual};
 
 /// One control point: a place in the picture in pixels (pixel centres at halves, y down) and the
 /// same place on the side in millimetres (y down).
@@ -53,6 +58,8 @@ pub enum RegistrationError {
         /// The worst place, to a millimetre.
         near_mm: [i32; 2],
     },
+    #[error("the control points put the whole picture beside the sheet")]
+    Beside,
     #[error("the sheet has no size")]
     NoSheet,
     #[error("the smoothing must be a finite number of at least 0")]

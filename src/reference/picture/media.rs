@@ -293,6 +293,7 @@ fn layers<T>(media: &[MediaMap], of: impl Fn(usize) -> T) -> Vec<MediaLayer<T>> 
         .iter()
         .map(|map| MediaLayer {
             path: map.file.path.clone(),
+            warp: map.file.warp.clone(),
             channels: channels(&map.content),
         })
         .collect()
@@ -305,7 +306,7 @@ pub(super) fn roughness(
     paper: f64,
 ) -> Result<Option<Field>, PictureError> {
     if let Some(map) = &side.roughness {
-        let pyramid = maps::load_roughness(&map.file.path, map.gloss)?;
+        let pyramid = maps::load_roughness(&map.file, map.gloss)?;
         return Ok(Field::new(pyramid, map.file.uv_from_side));
     }
     let Some(lowest) = side.media.first() else {

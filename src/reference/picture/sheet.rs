@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     manifest::{
-        exhibit::{BARE_PAPER, Drawing, Exhibit, OverlayKind, Paper, Scene, SideName, Surface},
+        exhibit::{BARE_PAPER, Drawing, Exhibit, Paper, Scene, SideName, Surface},
         surface::SideSurface,
     },
     maps::{self, Coding, normal_coding},
@@ -98,7 +98,7 @@ impl Sheet {
         let albedo = match side {
             Some(side) => {
                 let map = &side.albedo;
-                let pyramid = maps::load_colour(&map.file.path, map.encoding)?;
+                let pyramid = maps::load_colour(&map.file, map.encoding)?;
                 if paper.albedo.is_none() {
                     bare = maps::bare_albedo(&pyramid);
                 }
@@ -364,7 +364,7 @@ fn relief(side: Option<&SideMaps>) -> Result<Option<Relief>, PictureError> {
     let Some(map) = side.and_then(|side| side.height.as_ref()) else {
         return Ok(None);
     };
-    let heights = maps::load_height(&map.file.path)?;
+    let heights = maps::load_height(&map.file)?;
     let field = Field::new(heights, map.file.uv_from_side);
     Ok(field.map(|field| Relief::new(field, map.range_um)))
 }
@@ -373,12 +373,12 @@ fn normal(side: Option<&SideMaps>) -> Result<Option<(Field, Coding)>, PictureErr
     let Some(side) = side else { return Ok(None) };
     let (pyramid, place) = match (&side.normal, &side.height) {
         (Some(map), _) => {
-            let pyramid = maps::load_normal(&map.file.path, map.y)?;
+            let pyramid = maps::load_normal(&map.file, map.y)?;
             (pyramid, map.file.uv_from_side)
         }
         (None, Some(map)) => {
             let extent = map.file.extent_mm();
-            let pyramid = maps::load_normal_from_height(&map.file.path, map.range_um, extent)?;
+            let pyramid = maps::load_normal_from_height(&map.file, map.range_um, extent)?;
             (pyramid, map.file.uv_from_side)
         }
         (None, None) => return Ok(None),
@@ -401,25 +401,12 @@ fn outline(drawing: &Drawing, side: SideName) -> Result<Option<Field>, PictureEr
 
 fn overlays(drawing: &Drawing, scene: &Scene) -> Result<Vec<Overlay>, PictureError> {
     let mut laid = Vec::new();
-    for &(overlay, opacity) in &scene.overlays {
-        let overlay = &drawing.overlays[overlay];
-        let path = &overlay.file.path;
-        let (pyramid, is_lit) = match &overlay.kind {
-            OverlayKind::Categorical(legend) => {
-                let colours: Vec<[u8; 3]> = legend.iter().map(|entry| entry.colour).collect();
-                let map = maps::load_overlay_categorical(path, &colours)?;
-                (map.pyramid, false)
-            }
-            OverlayKind::Continuous { colour_map, .. } => {
-                (maps::load_overlay_continuous(path, *colour_map)?, false)
-            }
-            OverlayKind::Picture(encoding) => (maps::load_overlay_picture(path, *encoding)?, true),
-        };
-        if let Some(field) = Field::new(pyramid, overlay.file.uv_from_side) {
+    for (overlay, opacity) in scene.laid(drawing) {
+        if let Some(field) = Field::new(overlay.load()?, overlay.file.uv_from_side) {
             laid.push(Overlay {
                 field,
                 opacity,
-                is_lit,
+                is_lit: overlay.kind.is_lit(),
             });
         }
     }
@@ -456,7 +443,7 @@ fn through(
     let behind = match other {
         Some(side) => {
             let map = &side.albedo;
-            let pyramid = maps::load_colour(&map.file.path, map.encoding)?;
+            let pyramid = maps::load_colour(&map.file, map.encoding)?;
             let of_other = paper.albedo.unwrap_or_else(|| maps::bare_albedo(&pyramid));
             let place = map.file.uv_from_side * drawing.recto_from(SideName::Verso);
             let scale = std::array::from_fn(|c| bare[c] / of_other[c].max(1e-3));

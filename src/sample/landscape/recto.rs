@@ -25,11 +25,22 @@ const INFRARED_INK: f32 = 0.08;
 const INFRARED_WASH: f32 = 0.05;
 const INFRARED_LEAD: f32 = 4.2;
 
+/// What is left of the inks' and the wash's τ at 850 nm: iron-gall ink is brown-black for its
+/// absorption of visible light, and fades from 800 nm on.
+const NEAR_INFRARED_INK: f32 = 0.22;
+const NEAR_INFRARED_WASH: f32 = 0.12;
+/// Reflectance of lead point there, which is as dark as to the eye, and of paper.
+const NEAR_INFRARED_LEAD: f32 = 0.12;
+
 /// Grey planes of the recto, in the order of [`SideMaps::greys`].
 pub const INFRARED: usize = 0;
 pub const LOWER_MEDIA: usize = 1;
 pub const UPPER_MEDIA: usize = 2;
 pub const ALL_MEDIA: usize = 3;
+/// Reflectance in each band, sRGB-encoded, from the first on.
+pub const BANDS: usize = 4;
+/// The bands, in nm.
+pub const BANDS_NM: [u32; 4] = [450, 550, 650, 850];
 /// Codes in the media planes.
 pub const NONE: u8 = 0;
 pub const LEAD: u8 = 1;
@@ -85,16 +96,23 @@ pub fn maps(grid: Grid, paper: &Paper, damage: &Damage, drawn: &Drawn) -> SideMa
         let wash = brush.tau(texel);
         let after = damage.after(paper, Face::Recto, texel.at);
         let before = damage.before(paper, Face::Recto, texel.at);
+        let colours = [after, before].map(|ageing| texel.colour(wash * WASH, ageing));
         Shown {
-            colours: [after, before].map(|ageing| texel.colour(wash * WASH, ageing)),
+            colours,
             roughness: roughness(texel, wash),
             greys: {
                 let [lower, upper] = media(texel, wash);
+                // Bands of visible light are what the colour is made of.
+                let [red, green, blue] = colours[0].to_array().map(side::srgb8);
                 [
                     infrared(texel, wash),
                     lower,
                     upper,
                     if upper == NONE { lower } else { upper },
+                    blue,
+                    green,
+                    red,
+                    near_infrared(texel, wash),
                 ]
             },
         }
@@ -129,6 +147,15 @@ fn media(texel: &Texel, wash: f32) -> [u8; 2] {
         NONE
     };
     [lower, upper]
+}
+
+/// What a camera sees at 850 nm: ink is fading, lead is not.
+fn near_infrared(texel: &Texel, wash: f32) -> u8 {
+    let paper = 0.30 + 0.62 * texel.paper.x;
+    let drawn = paper + (NEAR_INFRARED_LEAD - paper) * texel.lead().min(0.9);
+    let ink = NEAR_INFRARED_INK * (texel.tau(Layer::DarkInk) + texel.tau(Layer::PaleInk))
+        + NEAR_INFRARED_WASH * wash;
+    side::srgb8(drawn * (-ink).exp())
 }
 
 /// What a camera sees around 1 µm: the inks fade, the lead point underneath stays.

@@ -1,6 +1,7 @@
 //! The landscape's files.
 
 use super::{composition, recto};
+use crate::colour;
 use crate::sample::{
     SampleError,
     damage::{Damage, Kind},
@@ -8,12 +9,12 @@ use crate::sample::{
     maps_out::{Out, Rgba},
     paper::Paper,
     sheet::{self, Thickness},
-    side::SideMaps,
+    side::{self, SideMaps},
     verso,
 };
 
 /// Files that the exhibit has, its manifest not counted.
-pub const FILES: usize = 21;
+pub const FILES: usize = 25;
 /// Samples of the macroscopic surface.
 const CURL_SAMPLES: [usize; 2] = [96, 65];
 const CLEAR: Rgba = [0; 4];
@@ -59,6 +60,14 @@ pub fn write(out: &mut Out, dpi: f64) -> Result<(), SampleError> {
     )?;
     let media = every_other(grid, half, &front.greys[recto::ALL_MEDIA]);
     out.codes("overlays/media.png", half, &media, &MEDIA)?;
+    for (band, nm) in recto::BANDS_NM.into_iter().enumerate() {
+        let plane = &front.greys[recto::BANDS + band];
+        out.grey8(
+            &format!("bands/{nm}.png"),
+            half,
+            &mean_of_four(grid, half, plane),
+        )?;
+    }
     drop(front);
 
     let back = verso::maps(grid, size, &paper, &damage, &drawn.strokes);
@@ -96,6 +105,24 @@ fn write_side(
     out.grey16(&format!("{name}/height.png"), grid, &maps.height)?;
     out.rgb8(&format!("{name}/normal.png"), grid, &maps.normal)?;
     out.grey8(&format!("{name}/roughness.png"), grid, &maps.roughness)
+}
+
+/// The mean light of each four pixels, sRGB-encoded as they are.
+fn mean_of_four(grid: Grid, half: Grid, encoded: &[u8]) -> Vec<u8> {
+    let light: Vec<f32> = (0..=255_u8)
+        .map(|code| colour::srgb_decode(f64::from(code) / 255.0) as f32)
+        .collect();
+    let at = |column: usize, row: usize| {
+        let i = row.min(grid.height - 1) * grid.width + column.min(grid.width - 1);
+        light[usize::from(encoded[i])]
+    };
+    (0..half.width * half.height)
+        .map(|i| {
+            let (x, y) = (2 * (i % half.width), 2 * (i / half.width));
+            let sum = at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1);
+            side::srgb8(sum / 4.0)
+        })
+        .collect()
 }
 
 /// The strongest code of each four pixels: strokes survive the halving.
