@@ -50,6 +50,7 @@ pub struct Report {
     pub sound: bool,
     pub manifest: PathBuf,
     pub drawings: usize,
+    pub hotspots: usize,
     pub tours: usize,
     pub warnings: Vec<Fault>,
     pub photographs: Vec<PhotographReport>,
@@ -184,6 +185,7 @@ impl Report {
             sound: true,
             manifest: exhibit.manifest.clone(),
             drawings: exhibit.drawings.len(),
+            hotspots: exhibit.drawings.iter().map(|d| d.hotspots.len()).sum(),
             tours: exhibit.tours.len(),
             warnings,
             photographs,
@@ -336,9 +338,10 @@ impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}: sound: {}, {}, {}, {}",
+            "{}: sound: {}, {}, {}, {}, {}",
             self.manifest.display(),
             counted(self.drawings, "drawing"),
+            counted(self.hotspots, "hotspot"),
             counted(self.scenes.len(), "scene"),
             counted(self.tours, "tour"),
             counted(self.warnings.len(), "warning"),

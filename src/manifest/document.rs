@@ -2,7 +2,9 @@
 //! at `drawing[0].recto.albedo` can say on which line and in which column.
 
 use std::{
-    fmt, fs, io,
+    fmt, fs,
+    hash::{DefaultHasher, Hash, Hasher},
+    io,
     ops::Range,
     path::{Path, PathBuf},
 };
@@ -150,6 +152,19 @@ pub(crate) fn read_text(file: &Path) -> Result<String, Faults> {
             ..words.of_file(file)
         })
     })
+}
+
+/// Tells one text of a manifest from another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fingerprint(u64);
+
+impl Fingerprint {
+    /// Of this text.
+    pub fn of(text: &str) -> Self {
+        let mut hasher = DefaultHasher::new();
+        text.hash(&mut hasher);
+        Self(hasher.finish())
+    }
 }
 
 /// A parsed manifest.

@@ -12,6 +12,7 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 use glam::{DAffine2, DVec2, DVec3};
 use serde::Serialize;
 
+use super::{document::Fingerprint, link::Link, raw::RawLamp};
 use crate::{
     maps::{
         ColourEncoding, ColourMapName, NormalY, Warp,
@@ -46,6 +47,10 @@ pub struct Exhibit {
     pub accuracy: Accuracy,
     /// The pictures that do not just cover their sheets.
     pub registered: Vec<Registered>,
+    /// Of the manifest's text that this was read from.
+    pub fingerprint: Fingerprint,
+    /// The link that added the last of the scenes.
+    pub link: Option<Link>,
     /// What the manifest asks for that this version of Recto validates but does not show yet,
     /// each as a sentence for `recto check`.
     pub not_shown_yet: Vec<String>,
@@ -364,15 +369,17 @@ pub enum BandMix {
     Difference { full: f64 },
 }
 
-/// A place on a side that leads to a scene.
+/// A region of a side that something is said about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hotspot {
+    pub id: String,
     pub side: SideName,
-    /// In the side frame.
-    pub at_mm: DVec2,
-    pub label: Wording,
-    /// Index into [`Exhibit::scenes`].
-    pub scene: usize,
+    /// The places around it in the side frame, at least three: a simple polygon with an area.
+    pub polygon_mm: Vec<DVec2>,
+    pub title: Wording,
+    pub text: Wording,
+    /// Where it leads: index into [`Exhibit::scenes`].
+    pub scene: Option<usize>,
 }
 
 /// A light source in photometric units.
@@ -382,6 +389,8 @@ pub struct Lamp {
     pub title: Wording,
     pub colour: LampColour,
     pub kind: LampKind,
+    /// As it is written, for a copy that names the same files; `None` for one that is not.
+    pub written: Option<Arc<RawLamp>>,
 }
 
 /// The colour of a lamp's light.

@@ -8,12 +8,15 @@
 //! | the same declarations → JSON Schema | [`schema()`] |
 //! | plain data → [`Exhibit`], with files, references and units | `validate` |
 //! | what is wrong, where, and what to do | [`Fault`], [`Faults`] |
+//! | a hotspot's outline, and what lies inside it | [`hotspot`] |
 //! | a photograph → which of its pixels no sheet gives back | [`capture`] |
 //! | a starting manifest from one picture | [`create`] |
 //! | a lamp or camera in one line | `overrides::spec` |
 //! | what lies over a side, as one picture each | [`Scene::laid`], [`Overlay::load`] |
 //! | what overlays and stacks say at one place | [`readout`] |
 //! | a scene changed by options of a command | [`overrides`] |
+//! | a scene → the manifest's own text | [`Draft`] |
+//! | a scene ↔ a word to pass on | [`Link`] |
 
 pub mod capture;
 pub mod comparison;
@@ -24,13 +27,16 @@ pub mod exhibit;
 pub mod eye;
 mod fault;
 pub mod frames;
+pub mod hotspot;
 pub mod lighting;
+mod link;
 mod macros;
 mod overlay;
 pub mod overrides;
 mod query;
 pub mod raw;
 pub mod readout;
+mod save;
 mod schema;
 pub mod surface;
 mod validate;
@@ -39,9 +45,11 @@ use std::path::Path;
 
 pub use create::{CreateError, create};
 pub use decode::{Brief, Dictionary, List, OfKind, OneOrMany, Pattern};
-pub use document::MANIFEST;
+pub use document::{Fingerprint, MANIFEST};
 pub use exhibit::*;
 pub use fault::{Fault, Faults, Place, Severity, did_you_mean, nearest, one, quote, quoted_list};
+pub use link::Link;
+pub use save::{Draft, SaveAs, SaveError};
 pub use schema::schema;
 
 use decode::{Decode, Node, Report};
@@ -56,6 +64,14 @@ impl Exhibit {
     /// # Errors
     /// All faults, warnings included, in the order of their places.
     pub fn read(path: &Path) -> Result<(Self, Vec<Fault>), Faults> {
+        Self::read_with(path, None)
+    }
+
+    /// As [`Self::read`], with the scene of a link behind its own.
+    ///
+    /// # Errors
+    /// As [`Self::read`]; those of the link have no place.
+    pub fn read_with(path: &Path, link: Option<&Link>) -> Result<(Self, Vec<Fault>), Faults> {
         let manifest = document::manifest_path(path);
         let text = document::read_text(&manifest)?;
         let folder = manifest.parent().unwrap_or(Path::new(""));
@@ -65,22 +81,40 @@ impl Exhibit {
         } else {
             folder
         };
-        Self::parse(&manifest, folder, &text)
+        Self::parse_with(&manifest, folder, &text, link)
     }
 
     fn parse(manifest: &Path, folder: &Path, text: &str) -> Result<(Self, Vec<Fault>), Faults> {
+        Self::parse_with(manifest, folder, text, None)
+    }
+
+    fn parse_with(
+        manifest: &Path,
+        folder: &Path,
+        text: &str,
+        link: Option<&Link>,
+    ) -> Result<(Self, Vec<Fault>), Faults> {
         let document = Document::parse(manifest, text)?;
         let mut report = Report::new(&document);
-        let raw = RawManifest::decode(&Node::root(&document), &mut report);
-        let exhibit = raw.and_then(|raw| validate::exhibit(&raw, manifest, folder, &mut report));
+        let mut raw = RawManifest::decode(&Node::root(&document), &mut report);
+        if let (Some(raw), Some(link)) = (&mut raw, link) {
+            link.join(raw);
+        }
+        let raw = raw.as_ref();
+        let exhibit = raw.and_then(|raw| validate::exhibit(raw, manifest, folder, &mut report));
         let mut faults = report.into_faults();
+        if let (Some(raw), Some(_)) = (raw, link) {
+            faults = Link::blamed(raw, faults);
+        }
         fault::sort(&mut faults);
         match exhibit {
-            Some(exhibit)
+            Some(mut exhibit)
                 if faults
                     .iter()
                     .all(|fault| fault.severity == Severity::Warning) =>
             {
+                exhibit.fingerprint = Fingerprint::of(text);
+                exhibit.link = link.cloned();
                 Ok((exhibit, faults))
             }
             _ => Err(Faults::new(faults).unwrap_or_else(|| unexplained(manifest).into())),

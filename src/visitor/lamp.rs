@@ -192,6 +192,7 @@ mod tests {
                 aim_mm: DVec3::ZERO,
                 diameter_mm: 300.0,
             },
+            written: None,
         };
         raking().put(&mut lamp);
         let place = LampPlace::of(&lamp).expect("it has a place");
@@ -210,6 +211,7 @@ mod tests {
                 intensity: Candela(10.0),
                 position_mm: DVec3::new(-300.0, 0.0, 400.0),
             },
+            written: None,
         };
         raking().put(&mut lamp);
         let place = LampPlace::of(&lamp).expect("it has a place");

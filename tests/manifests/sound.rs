@@ -143,7 +143,15 @@ fn every_key_arrives() {
             OverlayKind::Picture(_)
         ]
     ));
-    assert_eq!(sheet.hotspots[0].scene, 0);
+    let river = &sheet.hotspots[0];
+    assert_eq!((river.id.as_str(), river.side), ("river", SideName::Recto));
+    assert_eq!(river.polygon_mm[2], DVec2::new(40.0, 50.0));
+    assert_eq!(exhibit.text(&river.title, "it"), Some("Il fiume"));
+    assert_eq!(
+        exhibit.text(&river.text, "it"),
+        Some("Scorre verso sinistra.")
+    );
+    assert_eq!(river.scene, Some(0));
     let (_, washes) = exhibit.scene("washes").unwrap();
     assert_eq!(washes.overlays, [(0, 1.0), (2, 0.5)]);
     assert_eq!(washes.exposure.illuminance, Some(Lux(200.0)));
@@ -281,7 +289,6 @@ fn what_is_not_shown_yet_is_named() {
         read(FULL).not_shown_yet,
         [
             "Drawing \"landscape\": chain_lines_mm of the paper does not change the picture yet.",
-            "Drawing \"landscape\": hotspots are not shown yet.",
             "Tour \"attract\": tours do not run yet.",
         ]
     );

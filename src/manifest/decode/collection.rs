@@ -31,6 +31,16 @@ impl<T, const MIN: usize, const MAX: usize> List<T, MIN, MAX> {
         self.0.get(index)?.as_ref()
     }
 
+    /// How many there are, those at fault included.
+    pub(crate) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Adds an element behind the others.
+    pub(crate) fn push(&mut self, value: T) {
+        self.0.push(Some(value));
+    }
+
     /// Whether elements were left out because they are at fault.
     pub(crate) fn has_holes(&self) -> bool {
         self.0.iter().any(Option::is_none)

@@ -13,6 +13,7 @@ pub mod values;
 use super::{
     decode::{Brief, Decode, Dictionary, List, Node, OfKind, OneOrMany, Report, Rule, required},
     exhibit::{FlipAxis, SideName, Source},
+    hotspot::MAX_PLACES,
     macros::{kinds, record},
 };
 use crate::{
@@ -124,7 +125,7 @@ record! {
             /// Sets of pictures in several bands of light, each below its own
             /// `[[drawing.stack]]`.
             stack: List<RawStack>,
-            /// Places that lead to a scene, each below its own `[[drawing.hotspot]]`.
+            /// Regions that something is said about, each below its own `[[drawing.hotspot]]`.
             hotspot: List<RawHotspot>,
         }
         rules []
@@ -524,19 +525,24 @@ record! {
 }
 
 record! {
-    /// A place on a sheet that leads to a scene.
+    /// A region of a side that something is said about.
     pub struct RawHotspot {
         required {
-            /// mm from the left and top edges of the sheet.
-            at_mm: [PlaceMm; 2],
-            /// The id of the scene that it leads to.
-            scene: Id,
+            /// The name by which the hotspot is told from the others of its drawing.
+            id: Id,
+            /// The places around it, in mm from the left and top edges of its side, in order either
+            /// way round; the last is joined to the first.
+            polygon_mm: List<[PlaceMm; 2], 3, MAX_PLACES>,
+            /// What there is.
+            title: RawWording,
         }
         optional {
             /// The side that it lies on. Without it: recto.
             side: SideName,
-            /// What it says.
-            label: RawWording,
+            /// A few lines about it.
+            text: RawWording,
+            /// The id of a scene that it leads to.
+            scene: Id,
         }
         rules []
     }

@@ -9,12 +9,11 @@ use super::{
         decode::{Brief, List, Pattern},
         document::{Trail, Words},
         exhibit::{
-            Drawing, FlipAxis, HeightMap, Hotspot, LegendEntry, MapFile, Overlay, OverlayKind,
-            Side, SideName, SidePatch, Source, State, Surface, Wording,
+            Drawing, FlipAxis, HeightMap, LegendEntry, MapFile, Overlay, OverlayKind, Side,
+            SideName, SidePatch, Source, State, Surface, Wording,
         },
         raw::{
-            RawCategorical, RawDrawing, RawHotspot, RawOverlay, RawOverlayKind, RawSide, RawState,
-            RawSurface,
+            RawCategorical, RawDrawing, RawOverlay, RawOverlayKind, RawSide, RawState, RawSurface,
         },
     },
     Validator,
@@ -59,9 +58,6 @@ impl Validator<'_, '_> {
                 "Drawing \"{id}\": chain_lines_mm of the paper does not change the picture yet."
             ));
         }
-        if raw.hotspot.is_some() {
-            self.not_shown_yet(format!("Drawing \"{id}\": hotspots are not shown yet."));
-        }
         let states = self.each(
             &raw.state,
             &trail.key("state"),
@@ -80,6 +76,7 @@ impl Validator<'_, '_> {
             &trail.key("hotspot"),
             |validator, raw, trail| validator.hotspot(raw, trail, size_mm, scenes),
         );
+        self.unique_hotspots(raw, &trail.key("hotspot"));
         let facts = DrawingFacts::of(raw);
         self.unique(&facts.states, &trail.key("state"));
         self.unique(&facts.own_overlays, &trail.key("overlay"));
@@ -306,32 +303,6 @@ impl Validator<'_, '_> {
             entries.push(LegendEntry { id, colour, label });
         }
         entries
-    }
-
-    fn hotspot(
-        &mut self,
-        raw: &RawHotspot,
-        trail: &Trail,
-        size_mm: DVec2,
-        scenes: &Names,
-    ) -> Option<Hotspot> {
-        let at_mm = DVec2::from(raw.at_mm.map(|mm| mm.0));
-        if at_mm.cmplt(DVec2::ZERO).any() || at_mm.cmpgt(size_mm).any() {
-            let words = Words::new(
-                format!("a place beside the sheet, {} mm, {} mm", at_mm.x, at_mm.y),
-                format!("0 to {} mm and 0 to {} mm", size_mm.x, size_mm.y),
-                "measure from the left and top edges",
-            );
-            self.report.fault(&trail.key("at_mm"), words);
-        }
-        let label = self.wording(raw.label.as_ref(), &trail.key("label"));
-        let scene = self.resolve(raw.scene.as_str(), scenes, &trail.key("scene"))?;
-        Some(Hotspot {
-            side: raw.side.unwrap_or_default(),
-            at_mm,
-            label,
-            scene,
-        })
     }
 }
 

@@ -16,6 +16,7 @@ use super::{
                 LampCandela, LampEfficacy, LampLumen, LampLux, LampNits, LampWatts, PositionMm,
             },
         },
+        save::written::same_lamp,
     },
     Validator,
 };
@@ -25,7 +26,7 @@ use crate::{
 };
 
 /// Daylight, and what a display shows as neutral unless a scene says otherwise.
-pub(super) const DAYLIGHT_K: f64 = 6504.0;
+pub(in super::super) const DAYLIGHT_K: f64 = 6504.0;
 /// The id of the lamp that a manifest without lamps has.
 pub(super) const DEFAULT_ID: &str = "reference";
 /// Where a lamp stands whose distance is not given: a copy stand's arm.
@@ -41,21 +42,32 @@ macro_rules! flux {
     };
 }
 
+/// The lamp of a manifest without lamps.
+fn usual_lamp() -> Lamp {
+    Lamp {
+        id: DEFAULT_ID.to_owned(),
+        title: Wording::default(),
+        colour: LampColour::Temperature(Kelvin(DAYLIGHT_K)),
+        kind: LampKind::Distant {
+            illuminance: Lux(1000.0),
+            elevation: Degrees(45.0),
+            azimuth: Degrees(135.0),
+        },
+        written: None,
+    }
+}
+
+/// The lamps of a manifest without lamps, as it could write them.
+pub(in super::super) fn usual_lamps() -> impl Iterator<Item = RawLamp> {
+    same_lamp(&usual_lamp()).into_iter()
+}
+
 impl Validator<'_, '_> {
     /// The lamps of the manifest, or the reference lamp: distant, 1000 lx, from the top left at
     /// 45°, in the light that is shown as neutral, so that a photograph looks as it is.
     pub(super) fn lamps(&mut self, raw: &RawManifest, trail: &Trail) -> Option<Vec<Lamp>> {
         let Some(lamps) = &raw.lamp else {
-            return Some(vec![Lamp {
-                id: DEFAULT_ID.to_owned(),
-                title: Wording::default(),
-                colour: LampColour::Temperature(Kelvin(DAYLIGHT_K)),
-                kind: LampKind::Distant {
-                    illuminance: Lux(1000.0),
-                    elevation: Degrees(45.0),
-                    azimuth: Degrees(135.0),
-                },
-            }]);
+            return Some(vec![usual_lamp()]);
         };
         let lamps: Vec<_> = List::iter(lamps)
             .map(|(i, lamp)| self.lamp(lamp, &trail.index(i)))
@@ -74,6 +86,7 @@ impl Validator<'_, '_> {
             title,
             colour: colour?,
             kind,
+            written: Some(Arc::new(raw.clone())),
         })
     }
 

@@ -3,6 +3,7 @@
 
 mod drawing;
 mod files;
+mod hotspot;
 mod lamp;
 mod medium;
 mod names;
@@ -16,13 +17,14 @@ use std::path::{Path, PathBuf};
 
 use super::{
     decode::Report,
-    document::Trail,
+    document::{Fingerprint, Trail},
     exhibit::{Accuracy, Exhibit, Registered, ResolvedMedium},
     raw::RawManifest,
 };
 use names::Names;
 
 pub(crate) use files::{PICTURE, map_words};
+pub(super) use lamp::{DAYLIGHT_K, usual_lamps};
 pub(super) use scene::chosen;
 
 /// What all parts of the validation share.
@@ -132,6 +134,8 @@ impl Validator<'_, '_> {
                 frame_ms: accuracy.and_then(|a| a.frame_ms).map_or(16.0, |ms| ms.0),
             },
             registered: std::mem::take(&mut self.registered),
+            fingerprint: Fingerprint::default(),
+            link: None,
             not_shown_yet: std::mem::take(&mut self.not_shown_yet),
         };
         self.near_lamps(&exhibit, &root.key("lamp"));

@@ -9,7 +9,8 @@ use super::{
         decode::{Brief, List, Pattern},
         document::{Trail, Words},
         exhibit::{
-            Ambient, Camera, Comparison, Enhancement, Exposure, LegendEntry, Member, Scene, SideName, Tour,
+            Ambient, Camera, Comparison, Enhancement, Exposure, LegendEntry, Member, Scene,
+            SideName, Tour,
         },
         fault::{did_you_mean, quote, quoted_list},
         raw::{
@@ -552,7 +553,7 @@ fn exposure(scene: Option<&RawExposure>, exhibit: Option<&RawExposure>) -> Expos
 
 impl RawScene {
     /// The scene of a drawing in a manifest without scenes.
-    fn of_drawing(id: &Id) -> Self {
+    pub(in super::super) fn of_drawing(id: &Id) -> Self {
         Self {
             id: id.clone(),
             like: None,
