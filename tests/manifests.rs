@@ -5,6 +5,9 @@
 mod broken;
 #[path = "manifests/pictures.rs"]
 mod pictures;
+#[cfg(unix)]
+#[path = "manifests/saving.rs"]
+mod saving;
 #[path = "manifests/schema.rs"]
 mod schema;
 #[path = "manifests/sound.rs"]

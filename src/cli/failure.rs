@@ -6,7 +6,7 @@ use super::output;
 use crate::{
     device::NoDevice,
     figure::FigureError,
-    manifest::{CreateError, Faults},
+    manifest::{CreateError, Faults, SaveError},
     maps::MapError,
     sample::SampleError,
     shot::ShotError,
@@ -108,6 +108,15 @@ impl From<CreateError> for Failure {
     fn from(error: CreateError) -> Self {
         match error {
             CreateError::Faults(faults) => faults.into(),
+            error => Self::Input(Box::new(error)),
+        }
+    }
+}
+
+impl From<SaveError> for Failure {
+    fn from(error: SaveError) -> Self {
+        match error {
+            SaveError::Faults(faults) => faults.into(),
             error => Self::Input(Box::new(error)),
         }
     }

@@ -16,6 +16,7 @@ mod register;
 mod render;
 pub mod report;
 mod sample;
+mod saving;
 mod schema;
 mod show;
 mod tradeoff;

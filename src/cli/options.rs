@@ -1,9 +1,12 @@
 //! Options that several commands share, and how their values are read.
 
+use std::path::Path;
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
+use super::Failure;
 use crate::{
-    manifest::{SideName, overrides::Overrides},
+    manifest::{Exhibit, Link, SideName, overrides::Overrides},
     maps::MAX_SIDE,
     optics::tier::Tier,
 };
@@ -14,6 +17,9 @@ pub struct SceneArguments {
     /// The scene; without it, the first
     #[arg(long, value_name = "ID")]
     scene: Option<String>,
+    /// A link as K prints it in a window, instead of a scene
+    #[arg(long, value_name = "TEXT", conflicts_with = "scene")]
+    link: Option<String>,
     /// Another drawing, the whole sheet of it, in the light of the scene
     #[arg(long, value_name = "ID")]
     drawing: Option<String>,
@@ -53,6 +59,18 @@ pub struct SceneArguments {
 }
 
 impl SceneArguments {
+    /// Reads the exhibit at `path` and says its warnings; with the scene of the link, by whose id
+    /// it then goes.
+    pub fn read(&mut self, path: &Path) -> Result<Exhibit, Failure> {
+        let link = self.link.as_deref().map(Link::read).transpose()?;
+        let (exhibit, warnings) = Exhibit::read_with(path, link.as_ref())?;
+        super::warn(&warnings);
+        if link.is_some() {
+            self.scene = exhibit.scenes.last().map(|scene| scene.id.clone());
+        }
+        Ok(exhibit)
+    }
+
     pub fn overrides(self) -> Overrides {
         Overrides {
             scene: self.scene,

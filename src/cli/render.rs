@@ -9,7 +9,7 @@ use std::{
 use super::{
     Failure,
     options::{self, SceneArguments},
-    output,
+    output, saving,
 };
 use crate::{
     develop::{self, Print},
@@ -39,7 +39,7 @@ pub struct Pictures {
     #[command(flatten)]
     scene: SceneArguments,
     /// Every scene of the exhibit, and a contact sheet of them
-    #[arg(long, conflicts_with_all = ["scene", "drawing"])]
+    #[arg(long, conflicts_with_all = ["scene", "drawing", "link"])]
     all_scenes: bool,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = options::size_px)]
@@ -61,6 +61,9 @@ pub struct Arguments {
     /// says what it was made from, how large and how exactly, and by which command
     #[arg(long)]
     figure: bool,
+    /// Write the scene into the manifest as well, by this id; one that has it is replaced
+    #[arg(long, value_name = "ID", conflicts_with = "all_scenes")]
+    save_scene: Option<String>,
 }
 
 /// What the pictures are written as.
@@ -107,11 +110,11 @@ impl Format {
 impl Pictures {
     /// Reads and checks all there is to know before anything is rendered: every fault of options
     /// and exhibit, with `verify_maps` of the pictures too, and whether the files can be written.
-    pub fn commission(self, tier: Tier, verify_maps: bool) -> Result<Commission, Failure> {
+    pub fn commission(mut self, tier: Tier, verify_maps: bool) -> Result<Commission, Failure> {
         let (all, size, out) = (self.all_scenes, self.size, self.out);
         let format = if all { Format::Png } else { Format::of(&out)? };
         let path = self.exhibit;
-        let exhibit = super::read(&path)?;
+        let exhibit = self.scene.read(&path)?;
         let overrides = self.scene.overrides();
         let (exhibit, scenes) = scenes(exhibit, overrides.clone(), all, size)?;
         if all || verify_maps {
@@ -271,6 +274,11 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         }
         false => None,
     };
+    // Whatever is wrong with it is known before the picture is made.
+    let draft = match (&arguments.save_scene, commission.scenes.first()) {
+        (Some(id), Some(scene)) => Some(saving::draft(&commission, scene, id)?),
+        _ => None,
+    };
     device::probe()?;
 
     let size = commission.size;
@@ -294,7 +302,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             None => commission.deliver(scene, &picture)?,
         }
     }
-    Ok(())
+    draft.map_or(Ok(()), |draft| saving::write(&draft))
 }
 
 /// Renders every scene into a file of its own, and all of them onto a contact sheet.

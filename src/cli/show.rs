@@ -18,6 +18,9 @@ pub struct Arguments {
     /// The scene to begin with
     #[arg(long, value_name = "ID")]
     scene: Option<String>,
+    /// A link as K prints it in a window: the view to begin with
+    #[arg(long, value_name = "TEXT", conflicts_with = "scene")]
+    link: Option<String>,
     /// How exactly light is calculated; without it, as exactly as the exhibit asks
     #[arg(long, value_parser = options::tier())]
     tier: Option<Tier>,
@@ -47,6 +50,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     }
     let options = ShowOptions {
         scene: arguments.scene,
+        link: arguments.link,
         tier: arguments.tier,
         display_mm: arguments.display_mm,
         size: arguments.size,

@@ -24,7 +24,7 @@ use notify::{
 use super::{Arranged, Library, StageSet, Waker, say};
 use crate::{
     manifest::{
-        Fault, Faults,
+        Fault, Faults, Link,
         exhibit::{Drawing, Exhibit, MapFile, Surface},
     },
     maps::ColourEncoding,
@@ -186,6 +186,8 @@ fn encodings(exhibit: &Exhibit, path: &Path) -> HashSet<ColourEncoding> {
 /// Reads one exhibit again and again.
 struct Reader {
     manifest: PathBuf,
+    /// Adds a scene each time.
+    link: Option<Link>,
     /// The files of the last sound version, or of the first one.
     sound: Stamps,
     /// Maps whose pixels are sound. Of the first version, only what was shown was ever decoded.
@@ -200,6 +202,7 @@ impl Reader {
     fn new(exhibit: &Exhibit) -> Self {
         Self {
             manifest: exhibit.manifest.clone(),
+            link: exhibit.link.clone(),
             sound: stamps(exhibit),
             verified: HashMap::new(),
             warnings: Vec::new(),
@@ -209,7 +212,8 @@ impl Reader {
 
     /// A version that is new and sound with its warnings, or `None` if nothing is new.
     fn read(&mut self) -> Result<Option<(Sound, Vec<Fault>)>, Faults> {
-        let (exhibit, mut warnings) = match Exhibit::read(&self.manifest) {
+        let read = Exhibit::read_with(&self.manifest, self.link.as_ref());
+        let (exhibit, mut warnings) = match read {
             Ok(read) => read,
             Err(faults) => {
                 let stamps = Stamps::from([(self.manifest.clone(), stamp(&self.manifest))]);

@@ -4,6 +4,7 @@ use bevy::prelude::*;
 
 use super::{comparing, hand::Hand};
 use crate::{
+    manifest::exhibit::Hotspot,
     optics::tier::Tier,
     stage::{
         Shown,
@@ -19,7 +20,7 @@ const TITLE: f32 = 1.25;
 const QUIET: f32 = 0.85;
 
 /// What the keys do, for the list of them and for the manual.
-pub const KEYS: [(&str, &str); 20] = [
+pub const KEYS: [(&str, &str); 24] = [
     ("drag", "turn the sheet; move it when zoomed in"),
     ("wheel, + −", "zoom"),
     ("double click", "true size and back"),
@@ -40,9 +41,16 @@ pub const KEYS: [(&str, &str); 20] = [
     ),
     ("N, P", "next scene, back"),
     ("H", "the scene as it was"),
+    ("I", "hotspots: click on one to open it, twice to go there"),
+    (
+        "Tab, Shift + Tab, Enter",
+        "next hotspot, back, to its scene",
+    ),
+    ("W, Ctrl + S", "save the view as a scene"),
+    ("K", "print a link to the view"),
     ("T, Shift + T", "next tier of accuracy, back"),
     ("C", "caption"),
-    ("F11, Esc", "full screen, quit"),
+    ("F11, Esc", "full screen, close or quit"),
 ];
 
 /// Which texts are wanted.
@@ -50,6 +58,8 @@ pub const KEYS: [(&str, &str); 20] = [
 pub struct Texts {
     pub caption: bool,
     pub keys: bool,
+    /// What became of a wish, until the next one.
+    pub notice: Option<String>,
 }
 
 impl Default for Texts {
@@ -57,6 +67,7 @@ impl Default for Texts {
         Self {
             caption: true,
             keys: false,
+            notice: None,
         }
     }
 }
@@ -87,11 +98,14 @@ pub fn draw(
     };
     let size = text_size(text.height) * QUIET;
     let wanted = Drawn {
-        caption: if texts.caption {
-            lines(&shown, &hand)
-        } else {
-            Vec::new()
-        },
+        caption: match hand.open_hotspot() {
+            Some(hotspot) => hotspot_lines(&shown, hotspot),
+            None if texts.caption => lines(&shown, &hand),
+            None => Vec::new(),
+        }
+        .into_iter()
+        .chain(texts.notice.clone())
+        .collect(),
         keys: texts.keys,
         size,
     };
@@ -195,6 +209,10 @@ pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
         0.0 => String::new(),
         share => format!("{:.0} % of the light through the sheet", share * 100.0),
     };
+    let hotspots = match drawing.hotspots.iter().any(|h| h.side == shown.scene.side) {
+        false if hand.shows_hotspots() => "no hotspots on this side",
+        _ => "",
+    };
     let parts = [
         shown.scene.side.word(),
         state,
@@ -203,8 +221,26 @@ pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
         &through,
         size,
         tier,
+        hotspots,
     ];
     lines.push(joined(&parts));
+    lines.retain(|line| !line.is_empty());
+    lines
+}
+
+/// What an open hotspot says, its title first, and where it leads.
+fn hotspot_lines(shown: &Shown, hotspot: &Hotspot) -> Vec<String> {
+    let say = |wording| shown.text(wording).unwrap_or_default();
+    let scene = hotspot.scene.map(|scene| &shown.exhibit.scenes[scene]);
+    let leads = scene.map_or(String::new(), |scene| {
+        let title = shown.text(&scene.title).unwrap_or(&scene.id);
+        format!("Enter, or another click: {title}")
+    });
+    let mut lines = vec![
+        say(&hotspot.title).to_owned(),
+        say(&hotspot.text).to_owned(),
+        leads,
+    ];
     lines.retain(|line| !line.is_empty());
     lines
 }

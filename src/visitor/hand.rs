@@ -8,6 +8,7 @@ use glam::{DQuat, DVec2, DVec3};
 
 use super::{
     comparing::{self, TURN_S},
+    hotspots::Hotspots,
     intent::Intent,
     lamp::LampPlace,
     motion::{self, Speed},
@@ -142,6 +143,7 @@ pub struct Hand {
     good: Option<Good>,
     /// Scenes that could not be shown.
     refused: BTreeSet<usize>,
+    pub(super) hotspots: Hotspots,
 }
 
 impl Hand {
@@ -176,6 +178,7 @@ impl Hand {
             both_sides: false,
             good: None,
             refused: BTreeSet::new(),
+            hotspots: Hotspots::default(),
         }
     }
 
@@ -193,7 +196,9 @@ impl Hand {
             self.still();
         }
         // A sheet that is being turned over may no longer have that other side.
-        self.flip = None;
+        if exhibit.drawing_of(is) != self.exhibit.drawing_of(&was) {
+            self.flip = None;
+        }
         self.scene = scene;
         self.exhibit = exhibit;
         self.refused.clear();
@@ -232,6 +237,8 @@ impl Hand {
                 self.set_width(self.camera().width_mm / factor, from);
                 self.shift(from, to);
             }
+            // Two clicks on a hotspot are about it.
+            Intent::TrueSize { at } if self.hotspot_at(at).is_some() => {}
             Intent::TrueSize { at } => self.true_size(at),
             Intent::Flip => self.turn_over(),
             Intent::Home => self.enter(self.scene),
@@ -311,7 +318,15 @@ impl Hand {
                 self.free = false;
                 self.tier = Tier::ALL[wrapped(at.unwrap_or_default(), by, Tier::ALL.len())];
             }
-            Intent::Caption | Intent::Keys | Intent::Fullscreen | Intent::Quit => {}
+            Intent::Tap(_) | Intent::Hotspots | Intent::StepHotspot(_) | Intent::GoOn => {
+                self.point_out(intent);
+            }
+            Intent::SaveView
+            | Intent::Link
+            | Intent::Caption
+            | Intent::Keys
+            | Intent::Fullscreen
+            | Intent::Quit => {}
         }
     }
 
@@ -424,6 +439,16 @@ impl Hand {
         }
     }
 
+    /// What is shown as a scene, at rest, with the exhibit that its lamps belong to.
+    pub fn view(&self) -> (Arc<Exhibit>, Scene) {
+        let mut scene = self.shown().scene;
+        // Not as it is halfway round, nor fitted to this picture's shape.
+        scene.side = self.view.side;
+        scene.camera = self.view.camera;
+        scene.overlays = self.view.overlays(self.drawing(), scene.side);
+        (self.lit.clone(), scene)
+    }
+
     /// Nobody asked for a tier: what is served decides, and until then the one of
     /// [`Hand::new`].
     pub fn leave_tier_free(&mut self) {
@@ -514,11 +539,12 @@ impl Hand {
         &self.exhibit.scenes[self.scene]
     }
 
-    fn drawing(&self) -> &Drawing {
+    pub(super) fn drawing(&self) -> &Drawing {
         self.exhibit.drawing_of(self.written())
     }
 
-    fn enter(&mut self, scene: usize) {
+    pub(super) fn enter(&mut self, scene: usize) {
+        self.close_hotspot();
         self.scene = scene;
         self.view = View::of(&self.exhibit, self.written());
         self.still();

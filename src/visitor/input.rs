@@ -50,7 +50,10 @@ pub struct Devices {
     cursor: Vec2,
     held: Option<(MouseButton, Held)>,
     shift: bool,
+    control: bool,
     lamp_key: bool,
+    /// Where the pointer went down that holds the sheet, while it has not gone far.
+    tap: Option<Vec2>,
     /// When and where the last click or tap began.
     click: Option<(Duration, Vec2)>,
     /// Fingers on the screen, at most two of which are followed.
@@ -68,6 +71,7 @@ impl Devices {
         match event {
             WindowEvent::KeyboardInput(key) => self.key(key, want),
             WindowEvent::CursorMoved(moved) => {
+                self.wander(moved.position);
                 let before = std::mem::replace(&mut self.cursor, moved.position);
                 match self.held {
                     Some((_, Held::Sheet)) => want(Intent::Drag {
@@ -88,8 +92,9 @@ impl Devices {
             }),
             WindowEvent::TouchInput(touch) => self.touch(touch, now, want),
             WindowEvent::KeyboardFocusLost(_) => {
-                (self.shift, self.lamp_key) = (false, false);
+                (self.shift, self.control, self.lamp_key) = (false, false, false);
                 self.fingers.clear();
+                self.tap = None;
                 if let Some((_, Held::Sheet)) = self.held.take() {
                     want(Intent::Release);
                 }
@@ -104,6 +109,18 @@ impl Devices {
         DVec2::new(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y)
     }
 
+    /// A pointer that goes far, or a second one, makes a tap a drag.
+    fn wander(&mut self, to: Vec2) {
+        self.tap = self.tap.filter(|from| from.distance(to) <= NEAR_PX);
+    }
+
+    /// A pointer went up that had gone down here, if it was a tap.
+    fn tapped(&mut self, mut want: impl FnMut(Intent)) {
+        if let Some(at) = self.tap.take() {
+            want(Intent::Tap(self.place(at)));
+        }
+    }
+
     fn button(&mut self, input: &MouseButtonInput, now: Duration, mut want: impl FnMut(Intent)) {
         if input.state == ButtonState::Released {
             if let Some((button, held)) = self.held
@@ -112,6 +129,7 @@ impl Devices {
                 self.held = None;
                 if held == Held::Sheet {
                     want(Intent::Release);
+                    self.tapped(want);
                 }
             }
             return;
@@ -128,6 +146,7 @@ impl Devices {
         self.held = Some((input.button, held));
         if held == Held::Sheet {
             want(Intent::Take);
+            self.tap = Some(self.cursor);
             self.click_at(self.cursor, now, want);
         }
     }
@@ -148,11 +167,14 @@ impl Devices {
             (TouchPhase::Started, None) => {
                 self.fingers.push((touch.id, touch.position));
                 want(Intent::Take);
+                self.tap = None;
                 if self.fingers.len() == 1 {
+                    self.tap = Some(touch.position);
                     self.click_at(touch.position, now, want);
                 }
             }
             (TouchPhase::Moved, Some(finger)) => {
+                self.wander(touch.position);
                 let before = self.spread();
                 let from = std::mem::replace(&mut self.fingers[finger].1, touch.position);
                 match (before, self.spread()) {
@@ -172,11 +194,14 @@ impl Devices {
             }
             (TouchPhase::Ended | TouchPhase::Canceled, Some(finger)) => {
                 self.fingers.remove(finger);
-                want(if self.fingers.is_empty() {
-                    Intent::Release
-                } else {
-                    Intent::Take
-                });
+                if !self.fingers.is_empty() {
+                    want(Intent::Take);
+                    return;
+                }
+                want(Intent::Release);
+                if touch.phase == TouchPhase::Ended {
+                    self.tapped(want);
+                }
             }
             _ => {}
         }
@@ -194,6 +219,7 @@ impl Devices {
         let pressed = input.state == ButtonState::Pressed;
         match &input.logical_key {
             Key::Shift => self.shift = pressed,
+            Key::Control => self.control = pressed,
             Key::Character(text) if text.eq_ignore_ascii_case("l") => self.lamp_key = pressed,
             _ => {}
         }
@@ -246,6 +272,8 @@ impl Devices {
             Key::PageUp => Intent::StepScene(-1),
             Key::Home => Intent::Home,
             Key::Escape => Intent::Quit,
+            Key::Tab => Intent::StepHotspot(if self.shift { -1 } else { 1 }),
+            Key::Enter => Intent::GoOn,
             Key::F1 => Intent::Keys,
             Key::F11 => Intent::Fullscreen,
             Key::Character(text) => match text.to_lowercase().as_str() {
@@ -256,6 +284,10 @@ impl Devices {
                 "1" => Intent::RaiseLamp(OVERHEAD_DEG),
                 "2" => Intent::RaiseLamp(OBLIQUE_DEG),
                 "3" => Intent::RaiseLamp(RAKING_DEG),
+                "i" => Intent::Hotspots,
+                "w" => Intent::SaveView,
+                "s" if self.control => Intent::SaveView,
+                "k" => Intent::Link,
                 "s" => Intent::StepState(if self.shift { -1 } else { 1 }),
                 "o" => Intent::StepOverlay,
                 "[" => Intent::Opacity(-OPACITY_STEP),

@@ -68,11 +68,25 @@ pub enum Intent {
     StepScene(i32),
     /// To another tier of accuracy, forwards (1) or back (−1).
     StepTier(i32),
+    /// A click or tap at this place that was no drag: opens a hotspot that is shown there, goes where
+    /// an open one leads, or closes it from beside it.
+    Tap(DVec2),
+    /// Shows or hides the hotspots of the side in view.
+    Hotspots,
+    /// Shows the hotspots and opens the next one (1) or the one before (−1).
+    StepHotspot(i32),
+    /// To the scene of the open hotspot.
+    GoOn,
+    /// Saves the view as a scene of the manifest.
+    SaveView,
+    /// Prints a link to the view.
+    Link,
     /// Shows or hides the caption.
     Caption,
     /// Shows or hides the list of keys.
     Keys,
     Fullscreen,
+    /// Closes the hotspot that is open, or else the window.
     Quit,
 }
 

@@ -6,6 +6,8 @@
 //! | [`Intent`] and time → [`Hand`] | [`hand`], `view`, `lamp`, `motion` |
 //! | [`Hand`] → [`crate::stage::Shown`] | [`Hand::shown`] |
 //! | comparisons in the hand | `comparing` |
+//! | hotspots under the hand and on screen | `hotspots` |
+//! | the view as a scene or a link | `saving` |
 //! | texts | `caption` |
 //! | which tier serves what is shown | `foresight` |
 //! | the window, and its rest | `window` |
@@ -15,10 +17,12 @@ mod comparing;
 mod display;
 mod foresight;
 pub mod hand;
+mod hotspots;
 mod input;
 mod intent;
 mod lamp;
 mod motion;
+mod saving;
 mod view;
 mod window;
 
@@ -32,7 +36,7 @@ pub use lamp::{LOWEST_DEG, LampPlace};
 
 use crate::{
     device::{self, NoDevice},
-    manifest::{Exhibit, Fault, Faults, Severity, did_you_mean, quote, quoted_list},
+    manifest::{Exhibit, Fault, Faults, Link, Severity, did_you_mean, quote, quoted_list},
     optics::tier::Tier,
     stage::say,
 };
@@ -42,6 +46,8 @@ use crate::{
 pub struct ShowOptions {
     /// Id of the first scene; without it, the exhibit's first.
     pub scene: Option<String>,
+    /// A link to the first scene, instead.
+    pub link: Option<String>,
     /// Without it, the cheapest tier that is as exact as the exhibit asks.
     pub tier: Option<Tier>,
     /// Width and height in mm of the display's visible area, for true size.
@@ -67,8 +73,13 @@ pub enum ShowError {
 /// # Errors
 /// All faults of the exhibit, or [`ShowError::NoDevice`] or [`ShowError::NoDisplay`].
 pub fn show(path: &Path, options: &ShowOptions) -> Result<u8, ShowError> {
-    let (exhibit, warnings) = Exhibit::read(path)?;
-    let scene = first_scene(&exhibit, options.scene.as_deref())?;
+    let link = options.link.as_deref().map(Link::read).transpose()?;
+    let (exhibit, warnings) = Exhibit::read_with(path, link.as_ref())?;
+    let scene = match link {
+        // A link's scene comes behind those of the manifest.
+        Some(_) => exhibit.scenes.len() - 1,
+        None => first_scene(&exhibit, options.scene.as_deref())?,
+    };
     for warning in warnings {
         say(warning);
     }

@@ -31,8 +31,10 @@ use super::{
     caption::{self, Texts},
     foresight::{Foresight, Observed, foresee},
     hand::{Hand, Picture, Retreat},
+    hotspots,
     input::Devices,
     intent::Intent,
+    saving::{self, Saved},
 };
 use crate::{
     device,
@@ -104,6 +106,7 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         .insert_resource(hand)
         .init_resource::<Devices>()
         .init_resource::<Texts>()
+        .init_resource::<Saved>()
         .init_resource::<Pace>()
         .init_resource::<Foresight>()
         .insert_resource(PictureSize(UVec2::ONE))
@@ -120,10 +123,17 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         .add_systems(
             Update,
             (
-                (take_in_reread, measure, read_devices, steer, follow_wishes)
+                (
+                    take_in_reread,
+                    measure,
+                    read_devices,
+                    steer,
+                    follow_wishes,
+                    saving::keep,
+                )
                     .chain()
                     .in_set(StageSet::Steer),
-                (fall_back, foresee, caption::draw, rest)
+                (fall_back, foresee, hotspots::draw, caption::draw, rest)
                     .chain()
                     .after(StageSet::Arrange),
             ),
@@ -322,7 +332,7 @@ fn differs(a: &Shown, b: &Shown) -> bool {
 fn follow_wishes(
     mut intents: MessageReader<Intent>,
     mut closed: MessageReader<WindowCloseRequested>,
-    mut texts: ResMut<Texts>,
+    (mut hand, mut texts): (ResMut<Hand>, ResMut<Texts>),
     mut windows: Query<&mut Window, With<PrimaryWindow>>,
     mut exit: MessageWriter<AppExit>,
 ) {
@@ -335,6 +345,8 @@ fn follow_wishes(
                     window.mode = mode(window.mode == WindowMode::Windowed);
                 }
             }
+            // What is open closes first.
+            Intent::Quit if hand.bypass_change_detection().close_hotspot() => texts.set_changed(),
             Intent::Quit => drop(exit.write(AppExit::Success)),
             _ => {}
         }

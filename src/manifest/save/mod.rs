@@ -16,7 +16,7 @@ use std::{
 };
 
 use super::{
-    Exhibit, Fault, Faults, Lamp, Pattern, Scene, document,
+    Exhibit, Faults, Lamp, Pattern, Scene, document,
     document::Fingerprint,
     raw::{RawLamp, RawScene, values::Id},
 };
@@ -88,8 +88,6 @@ pub struct Draft {
     new: String,
     /// Of the scene.
     id: String,
-    /// Of the new text.
-    warnings: Vec<Fault>,
 }
 
 impl Exhibit {
@@ -146,17 +144,11 @@ impl Exhibit {
         let raw = written::scene(self, &scene, &lamps.ids)
             .ok_or_else(|| unwritable("the view cannot be written"))?;
         let new = there.edited(&old, &raw, &lamps.new, replaced)?;
-        let (read, warnings) = Self::parse(&self.manifest, &self.folder, &new)?;
+        let (read, _) = Self::parse(&self.manifest, &self.folder, &new)?;
         if !read.has(&scene, self) {
             return Err(unwritable("it would not be the same view"));
         }
-        Ok(Draft {
-            path,
-            old,
-            new,
-            id,
-            warnings,
-        })
+        Ok(Draft { path, old, new, id })
     }
 
     /// The manifest's text with a scene and lamps in it; `self` is what `old` says.
@@ -293,11 +285,6 @@ impl Draft {
     /// The whole text of the manifest to be.
     pub fn text(&self) -> &str {
         &self.new
-    }
-
-    /// What to warn of in it.
-    pub fn warnings(&self) -> &[Fault] {
-        &self.warnings
     }
 
     /// Replaces the manifest's file, and returns what tells its new text from others.

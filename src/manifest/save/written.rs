@@ -5,7 +5,7 @@ use serde::Serialize;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::super::{
-    decode::{Brief, Dictionary, List, Pattern, Record},
+    decode::{Brief, Dictionary, Pattern, Record},
     exhibit::{
         Ambient, Camera, CompareMode, Comparison, Drawing, Exhibit, Exposure, Lamp, LampColour,
         LampKind, Member, Scene, Wording,
