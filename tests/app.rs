@@ -2,6 +2,8 @@
 
 #[path = "app/hand.rs"]
 mod hand;
+#[path = "app/hotspots.rs"]
+mod hotspots;
 #[cfg(target_os = "linux")]
 #[path = "app/window.rs"]
 mod window;
@@ -35,6 +37,22 @@ id = "uv"
 side = "recto"
 kind = "picture"
 file = "paper.png"
+
+[[drawing.hotspot]]
+id = "field"
+title = "The field"
+polygon_mm = [[30, 30], [130, 30], [130, 130], [30, 130]]
+scene = "detail"
+[[drawing.hotspot]]
+id = "house"
+title = "The house"
+text = "It stands in the field."
+polygon_mm = [[60, 60], [90, 60], [75, 90]]
+[[drawing.hotspot]]
+id = "seal"
+title = "The seal"
+side = "verso"
+polygon_mm = [[10, 10], [60, 10], [60, 60], [10, 60]]
 
 [[drawing]]
 id = "page"

@@ -30,6 +30,8 @@ mod layers;
 mod media;
 #[path = "frames/relief.rs"]
 mod relief;
+#[path = "frames/saved.rs"]
+mod saved;
 #[path = "frames/sheets.rs"]
 mod sheets;
 #[path = "frames/strange.rs"]

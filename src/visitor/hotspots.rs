@@ -100,7 +100,11 @@ impl Hotspots {
     /// Every hotspot of the drawing that is shown, on the sides that are in view.
     pub fn seen(&self, shown: &Shown) -> Vec<Seen> {
         let mut seen = Vec::new();
-        for member in shown.members() {
+        let comparison = shown.scene.compare.as_ref();
+        // Of members that are shown in one, each place is the same in all.
+        let in_one = comparison.is_some_and(|comparison| comparison.mode.combines());
+        let count = if in_one { 1 } else { usize::MAX };
+        for member in shown.members().into_iter().take(count) {
             if member.scene.drawing != shown.scene.drawing {
                 continue;
             }
@@ -308,16 +312,42 @@ pub fn draw(
 /// The straight pieces of an outline, in pixels from the top left.
 fn pieces(seen: &Seen, aspect: f64, size: Vec2, open: Option<usize>) -> Vec<Piece> {
     let outline = &seen.outline;
-    let edges = outline.iter().zip(outline.iter().cycle().skip(1));
-    let within =
-        edges.filter(|(a, b)| seen.part.shows(**a, aspect) && seen.part.shows(**b, aspect));
     let px = |at: &DVec2| {
         let share = DVec2::new(at.x + 1.0, 1.0 - at.y) / 2.0;
         share.as_vec2() * size
     };
-    within
-        .map(|(a, b)| (px(a), px(b), open == Some(seen.hotspot)))
-        .collect()
+    let mut pieces: Vec<Piece> = Vec::new();
+    let mut through: Vec<Vec2> = Vec::new();
+    for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+        if !(seen.part.shows(*a, aspect) && seen.part.shows(*b, aspect)) {
+            through.clear();
+            continue;
+        }
+        let (from, to) = (px(a), px(b));
+        // What goes straight on is one piece.
+        if let Some((start, end, _)) = pieces.last_mut()
+            && *end == from
+            && through
+                .iter()
+                .chain([&from])
+                .all(|p| is_near(*p, *start, to))
+        {
+            *end = to;
+            through.push(from);
+            continue;
+        }
+        through.clear();
+        pieces.push((from, to, open == Some(seen.hotspot)));
+    }
+    pieces
+}
+
+/// Whether a place lies on a line as far as can be seen.
+fn is_near(place: Vec2, from: Vec2, to: Vec2) -> bool {
+    const NEAR_PX: f32 = 0.4;
+    let along = to - from;
+    let t = (place - from).dot(along) / along.length_squared().max(1e-6);
+    place.distance(from + along * t.clamp(0.0, 1.0)) <= NEAR_PX
 }
 
 /// A light line with dark rims, which is seen on paper and on ink.

@@ -322,3 +322,49 @@ fn notches(wheel: &MouseWheel) -> f64 {
     };
     f64::from(y)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wishes(moves: &[[f32; 2]]) -> Vec<Intent> {
+        let mut devices = Devices {
+            size: Vec2::new(400.0, 200.0),
+            cursor: Vec2::new(100.0, 50.0),
+            ..Devices::default()
+        };
+        let button = |state| {
+            WindowEvent::MouseButtonInput(MouseButtonInput {
+                button: MouseButton::Left,
+                state,
+                window: Entity::PLACEHOLDER,
+            })
+        };
+        let moved = |position: &[f32; 2]| {
+            WindowEvent::CursorMoved(CursorMoved {
+                window: Entity::PLACEHOLDER,
+                position: Vec2::from(*position),
+                delta: None,
+            })
+        };
+        let events = std::iter::once(button(ButtonState::Pressed))
+            .chain(moves.iter().map(moved))
+            .chain([button(ButtonState::Released)]);
+        let mut wishes = Vec::new();
+        for event in events {
+            devices.take(&event, Duration::ZERO, |intent| wishes.push(intent));
+        }
+        wishes
+    }
+
+    #[test]
+    fn a_click_that_goes_nowhere_is_a_tap_and_a_drag_is_none() {
+        let tap = Intent::Tap(DVec2::new(-0.5, 0.5));
+        assert!(wishes(&[]).contains(&tap));
+        assert!(wishes(&[[104.0, 52.0]]).contains(&tap));
+        for drag in [vec![[150.0, 50.0]], vec![[150.0, 50.0], [100.0, 50.0]]] {
+            let wishes = wishes(&drag);
+            assert!(!wishes.iter().any(|wish| matches!(wish, Intent::Tap(_))));
+        }
+    }
+}

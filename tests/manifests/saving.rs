@@ -6,21 +6,22 @@ use glam::{DVec2, DVec3};
 use proptest::{prelude::*, test_runner::TestRunner};
 use recto::{
     manifest::{
-        Camera, CompareMode, Comparison, Draft, Exhibit, Fingerprint, LampColour, LampKind, Link,
-        Member, SaveAs, SaveError, Scene, SideName, Wording,
+        Camera, CompareMode, Comparison, Draft, Enhancement, Exhibit, Fingerprint, LampColour,
+        LampKind, Link, Member, SaveAs, SaveError, Scene, SideName, Wording,
     },
     units::{Degrees, Kelvin, Lux},
 };
 
 use super::{Folder, sound::FULL};
 
-const MODES: [CompareMode; 6] = [
+const MODES: [CompareMode; 7] = [
     CompareMode::Curtain,
     CompareMode::SideBySide,
     CompareMode::Blend,
     CompareMode::Loupe,
     CompareMode::Difference,
     CompareMode::Flicker,
+    CompareMode::Glass,
 ];
 
 fn read(folder: &Folder) -> Exhibit {
@@ -97,6 +98,7 @@ fn strange(exhibit: &Exhibit, mode: CompareMode) -> Scene {
         radius: 1.0 / 7.0,
         magnify: 10.0 / 3.0,
         full_delta_e: 100.0 / 7.0,
+        full_luminance: Some(1.0 / 9.0),
         ..Comparison::new(mode, of)
     });
     scene.camera = Camera {
@@ -109,6 +111,13 @@ fn strange(exhibit: &Exhibit, mode: CompareMode) -> Scene {
     scene.overlays = vec![(2, 1.0 / 3.0), (0, 1e-300)];
     scene.exposure.illuminance = Some(Lux(1e3 / 7.0));
     scene.exposure.level = 1.0 / 3.0;
+    scene.transmitted = 1.0 / 7.0;
+    scene.enhance = Enhancement {
+        relief_only: true,
+        exaggerate: 10.0 / 3.0,
+        stretch: Some(DVec2::new(1.0 / 7.0, 2.0 / 3.0)),
+        sharpen: 1.0 / 9.0,
+    };
     scene.exposure.white = Kelvin(1e4 / 3.0);
     scene.ambient.illuminance = Lux(f64::MIN_POSITIVE);
     scene
@@ -142,6 +151,8 @@ fn scenes_that_differ_in_anything_are_told_apart() {
     assert!(other(|scene| scene.language = None));
     assert!(other(|scene| scene.state = None));
     assert!(other(|scene| scene.compare = None));
+    assert!(other(|scene| scene.transmitted = 0.0));
+    assert!(other(|scene| scene.enhance.sharpen = 0.0));
     let mut moved = exhibit.clone();
     moved.lamps[scene.lamps[0]].colour = LampColour::Temperature(Kelvin(3001.0));
     assert!(!read.has(&scene, &moved));

@@ -126,6 +126,10 @@ impl Exhibit {
             id: id.clone(),
             ..scene.clone()
         };
+        if let Some(comparison) = &mut scene.compare {
+            // Whose turn it is passes, and a difference in numbers is a file's.
+            (comparison.turn, comparison.coded) = (0, true);
+        }
         if let Some(replaced) = replaced {
             if scene.title.0.is_empty() {
                 scene.title = replaced.title.clone();

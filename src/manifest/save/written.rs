@@ -7,20 +7,20 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 use super::super::{
     decode::{Brief, Dictionary, Pattern, Record},
     exhibit::{
-        Ambient, Camera, CompareMode, Comparison, Drawing, Exhibit, Exposure, Lamp, LampColour,
-        LampKind, Member, Scene, Wording,
+        Ambient, Camera, CompareMode, Comparison, Drawing, Enhancement, Exhibit, Exposure, Lamp,
+        LampColour, LampKind, Member, Scene, Wording,
     },
     raw::{
-        RawAmbient, RawCamera, RawCompare, RawExposure, RawLamp, RawScene, RawShownOverlay,
-        RawWording,
+        RawAmbient, RawCamera, RawCompare, RawEnhance, RawExposure, RawLamp, RawScene,
+        RawShownOverlay, RawWording,
         lamp::{
             RawDisc, RawDistant, RawIes, RawLampCommon, RawLampKind, RawLightTable, RawPoint,
             RawRectangle, RawSpot,
         },
         values::{
-            ConeDeg, DeltaE, DistanceMm, ElevationDeg, Fraction, Id, LampCandela, LampLux, LampMm,
-            LampNits, Language, Level, Magnification, MemberText, PlaceMm, PositionMm, RoomLux,
-            Temperature, Text, TiltDeg, TurnDeg, ViewMm,
+            ConeDeg, DeltaE, DistanceMm, ElevationDeg, Exaggeration, Fraction, Id, LampCandela,
+            LampLux, LampMm, LampNits, Language, Level, Magnification, MemberText, PlaceMm,
+            PositionMm, RoomLux, Temperature, Text, TiltDeg, TurnDeg, ViewMm,
         },
     },
     validate::DAYLIGHT_K,
@@ -42,6 +42,8 @@ pub fn scene(exhibit: &Exhibit, scene: &Scene, lamps: &[Id]) -> Option<RawScene>
         lamps: _,
         ambient,
         exposure,
+        transmitted,
+        enhance,
         language,
     } = scene;
     let drawing = &exhibit.drawings[*drawing];
@@ -81,6 +83,8 @@ pub fn scene(exhibit: &Exhibit, scene: &Scene, lamps: &[Id]) -> Option<RawScene>
             level: Some(Level(*level)),
             white_kelvin: Some(Temperature(white.0)),
         }),
+        transmitted: (*transmitted != 0.0).then_some(Fraction(*transmitted)),
+        enhance: (*enhance != Enhancement::default()).then(|| enhanced(enhance)),
         language: match language {
             Some(tag) => Some(Language::from_text(tag)?),
             None => None,
@@ -107,6 +111,9 @@ fn comparison(exhibit: &Exhibit, drawing: &Drawing, comparison: &Comparison) -> 
         radius,
         magnify,
         full_delta_e,
+        full_luminance,
+        coded: _,
+        turn: _,
     } = comparison;
     let usual = Comparison::new(*mode, Vec::new());
     let of = of.iter().map(|member| {
@@ -130,6 +137,7 @@ fn comparison(exhibit: &Exhibit, drawing: &Drawing, comparison: &Comparison) -> 
         magnify: uses(&[Loupe], *magnify != usual.magnify).then_some(Magnification(*magnify)),
         full_delta_e: uses(&[Difference], *full_delta_e != usual.full_delta_e)
             .then_some(DeltaE(*full_delta_e)),
+        full_luminance: full_luminance.map(Level),
     })
 }
 
@@ -147,6 +155,21 @@ fn camera(camera: &Camera) -> RawCamera {
         tilt_deg: Some(TiltDeg(tilt.0)),
         turn_deg: Some(TurnDeg(turn.0)),
         distance_mm: distance_mm.map(DistanceMm),
+    }
+}
+
+fn enhanced(enhance: &Enhancement) -> RawEnhance {
+    let Enhancement {
+        relief_only,
+        exaggerate,
+        stretch,
+        sharpen,
+    } = enhance;
+    RawEnhance {
+        relief_only: Some(*relief_only),
+        exaggerate: Some(Exaggeration(*exaggerate)),
+        stretch: stretch.map(|ends| ends.to_array().map(Fraction)),
+        sharpen: Some(Fraction(*sharpen)),
     }
 }
 
