@@ -102,7 +102,7 @@ struct Sheet<'r> {
     readings: &'r [Reading],
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run(mut arguments: Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.plot {
         let is_png = path
             .extension()
@@ -122,7 +122,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     for path in arguments.plot.iter().chain(&arguments.csv) {
         output::can_write_file(path)?;
     }
-    let exhibit = super::read(&arguments.exhibit)?;
+    let exhibit = arguments.scene.read(&arguments.exhibit)?;
     let json = arguments.json;
     let measured = Asked::new(&arguments).measure(arguments, exhibit);
     if let (true, Err(Failure::Faults(faults))) = (json, &measured) {

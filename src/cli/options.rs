@@ -71,6 +71,11 @@ impl SceneArguments {
         Ok(exhibit)
     }
 
+    /// The text of the link, if there is one.
+    pub fn link(&self) -> Option<String> {
+        self.link.clone()
+    }
+
     pub fn overrides(self) -> Overrides {
         Overrides {
             scene: self.scene,
@@ -99,6 +104,7 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
         lamps,
         camera,
         compare,
+        transmitted,
         enhance,
         language,
     } = overrides;
@@ -125,6 +131,10 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
     }
     one("camera", camera.as_deref());
     one("compare", compare.as_deref());
+    one(
+        "transmitted",
+        transmitted.map(|share| share.to_string()).as_deref(),
+    );
     one("enhance", enhance.as_deref());
     one("language", language.as_deref());
     words

@@ -84,6 +84,7 @@ pub struct Commission {
     format: Format,
     /// As given: what makes each picture again.
     path: PathBuf,
+    link: Option<String>,
     overrides: Overrides,
 }
 
@@ -115,6 +116,7 @@ impl Pictures {
         let format = if all { Format::Png } else { Format::of(&out)? };
         let path = self.exhibit;
         let exhibit = self.scene.read(&path)?;
+        let link = self.scene.link();
         let overrides = self.scene.overrides();
         let (exhibit, scenes) = scenes(exhibit, overrides.clone(), all, size)?;
         if all || verify_maps {
@@ -137,6 +139,7 @@ impl Pictures {
             out,
             format,
             path,
+            link,
             overrides,
         })
     }
@@ -216,6 +219,11 @@ impl Commission {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
         let [width, height] = self.size;
         let mut words = vec!["render".to_owned(), path.display().to_string()];
+        if let Some(link) = &self.link {
+            // It holds the scene.
+            overrides.scene = None;
+            words.extend(["--link".to_owned(), link.clone()]);
+        }
         words.extend(options::written(&overrides));
         let size = format!("{width}x{height}");
         let rest = ["--size", &size, "--tier", tier.name(), "--figure", "--out"];

@@ -1,6 +1,6 @@
 //! Scenes written into a manifest and into links, and read again.
 
-use std::{fs, os::unix::fs::PermissionsExt};
+use std::{collections::BTreeMap, fs, os::unix::fs::PermissionsExt};
 
 use glam::{DVec2, DVec3};
 use proptest::{prelude::*, test_runner::TestRunner};
@@ -109,6 +109,7 @@ fn strange(exhibit: &Exhibit, mode: CompareMode) -> Scene {
         distance_mm: Some(1e5 / 3.0),
     };
     scene.overlays = vec![(2, 1.0 / 3.0), (0, 1e-300)];
+    scene.categories = BTreeMap::from([(0, vec![1])]);
     scene.exposure.illuminance = Some(Lux(1e3 / 7.0));
     scene.exposure.level = 1.0 / 3.0;
     scene.transmitted = 1.0 / 7.0;
@@ -241,6 +242,7 @@ fn whatever_number_there_is_is_kept_to_its_last_digit() {
                 distance_mm: None,
             };
             scene.overlays = vec![(0, share)];
+            scene.categories.clear();
             scene.exposure.illuminance = Some(Lux(lux));
             scene.ambient.illuminance = Lux(room);
             scene.lamps = vec![0];

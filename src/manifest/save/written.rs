@@ -5,10 +5,10 @@ use serde::Serialize;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::super::{
-    decode::{Brief, Dictionary, Pattern, Record},
+    decode::{Brief, Dictionary, List, Pattern, Record},
     exhibit::{
         Ambient, Camera, CompareMode, Comparison, Drawing, Enhancement, Exhibit, Exposure, Lamp,
-        LampColour, LampKind, Member, Scene, Wording,
+        LampColour, LampKind, Member, Overlay, OverlayKind, Scene, Wording,
     },
     raw::{
         RawAmbient, RawCamera, RawCompare, RawEnhance, RawExposure, RawLamp, RawScene,
@@ -19,8 +19,8 @@ use super::super::{
         },
         values::{
             ConeDeg, DeltaE, DistanceMm, ElevationDeg, Exaggeration, Fraction, Id, LampCandela,
-            LampLux, LampMm, LampNits, Language, Level, Magnification, MemberText, PlaceMm,
-            PositionMm, RoomLux, Temperature, Text, TiltDeg, TurnDeg, ViewMm,
+            LampLux, LampMm, LampNits, Language, LayerName, Level, Magnification, MemberText,
+            PlaceMm, PositionMm, RoomLux, Temperature, Text, TiltDeg, TurnDeg, ViewMm,
         },
     },
     validate::DAYLIGHT_K,
@@ -37,6 +37,7 @@ pub fn scene(exhibit: &Exhibit, scene: &Scene, lamps: &[Id]) -> Option<RawScene>
         side,
         state,
         overlays,
+        categories,
         compare,
         camera: eye,
         lamps: _,
@@ -48,9 +49,15 @@ pub fn scene(exhibit: &Exhibit, scene: &Scene, lamps: &[Id]) -> Option<RawScene>
     } = scene;
     let drawing = &exhibit.drawings[*drawing];
     let overlays = overlays.iter().map(|(index, opacity)| {
+        let overlay = &drawing.overlays[*index];
+        let shown = match categories.get(index) {
+            Some(shown) => Some(names(overlay, shown)?),
+            None => None,
+        };
         Some(Brief::Full(RawShownOverlay {
-            id: Id::from_text(&drawing.overlays[*index].id)?,
+            id: LayerName::from_text(&overlay.id)?,
             opacity: Some(Fraction(*opacity)),
+            categories: shown,
         }))
     });
     let overlays: Vec<_> = overlays.collect::<Option<_>>()?;
@@ -92,6 +99,17 @@ pub fn scene(exhibit: &Exhibit, scene: &Scene, lamps: &[Id]) -> Option<RawScene>
     })
 }
 
+/// What some categories of an overlay are called.
+fn names(overlay: &Overlay, shown: &[usize]) -> Option<List<Text, 1, 256>> {
+    let OverlayKind::Categorical(legend) = &overlay.kind else {
+        return None;
+    };
+    let names = shown
+        .iter()
+        .map(|index| Text::from_text(legend[*index].name()));
+    Some(names.collect::<Option<Vec<_>>>()?.into_iter().collect())
+}
+
 /// `None` within where there is no text, and altogether where one cannot be written.
 fn wording(wording: &Wording) -> Option<Option<RawWording>> {
     let texts = wording.0.iter();
@@ -120,6 +138,7 @@ fn comparison(exhibit: &Exhibit, drawing: &Drawing, comparison: &Comparison) -> 
         MemberText::from_text(&match member {
             Member::State(state) => format!("state:{}", drawing.states[*state].id),
             Member::Side(side) => format!("side:{}", side.word()),
+            // Also of a stack: STACK/700.
             Member::Overlay(overlay) => format!("overlay:{}", drawing.overlays[*overlay].id),
             Member::Drawing(drawing) => format!("drawing:{}", exhibit.drawings[*drawing].id),
         })
