@@ -131,10 +131,8 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
     }
     one("camera", camera.as_deref());
     one("compare", compare.as_deref());
-    one(
-        "transmitted",
-        transmitted.map(|share| share.to_string()).as_deref(),
-    );
+    let transmitted = transmitted.map(|share| share.to_string());
+    one("transmitted", transmitted.as_deref());
     one("enhance", enhance.as_deref());
     one("language", language.as_deref());
     words

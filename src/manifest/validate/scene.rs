@@ -18,7 +18,7 @@ use super::{
             scene::{
                 RawAmbient, RawCamera, RawCompare, RawEnhance, RawExposure, RawScene, RawTour,
             },
-            values::{Id, Text},
+            values::{Choice, Id, Text},
         },
     },
     Validator,
