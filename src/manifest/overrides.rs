@@ -12,8 +12,8 @@ use toml::{Table, Value};
 use super::{
     Fault, Faults, Pattern, did_you_mean,
     exhibit::{
-        Camera, Drawing, Enhancement, Exhibit, Lamp, LegendEntry, MAX_LAMPS, MAX_OVERLAYS, Member, OverlayKind,
-        Scene, SideName,
+        Camera, Drawing, Enhancement, Exhibit, Lamp, LegendEntry, MAX_LAMPS, MAX_OVERLAYS, Member,
+        OverlayKind, Scene, SideName,
     },
     frames, one, quote, quoted_list,
     raw::{RawCamera, RawCompare, RawEnhance, RawShownOverlay},

@@ -10,8 +10,9 @@ use super::{
     },
     RawWording,
     values::{
-        DeltaE, DistanceMm, Exaggeration, Fraction, Id, LampLux, Language, LayerName, Level, Magnification,
-        MemberText, PlaceMm, RoomLux, Seconds, Temperature, Text, TiltDeg, TurnDeg, ViewMm,
+        DeltaE, DistanceMm, Exaggeration, Fraction, Id, LampLux, Language, LayerName, Level,
+        Magnification, MemberText, PlaceMm, RoomLux, Seconds, Temperature, Text, TiltDeg, TurnDeg,
+        ViewMm,
     },
 };
 use crate::units::Degrees;

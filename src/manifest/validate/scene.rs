@@ -9,7 +9,8 @@ use super::{
         decode::{Brief, List, Pattern},
         document::{Trail, Words},
         exhibit::{
-            Ambient, Camera, Comparison, Enhancement, Exposure, LegendEntry, Member, Scene, SideName, Tour,
+            Ambient, Camera, Comparison, Enhancement, Exposure, LegendEntry, Member, Scene,
+            SideName, Tour,
         },
         fault::{did_you_mean, quote, quoted_list},
         raw::{
@@ -17,7 +18,7 @@ use super::{
             scene::{
                 RawAmbient, RawCamera, RawCompare, RawEnhance, RawExposure, RawScene, RawTour,
             },
-            values::{Id, Text},
+            values::{Choice, Id, Text},
         },
     },
     Validator,
