@@ -81,6 +81,7 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
         lamps,
         camera,
         compare,
+        transmitted,
         enhance,
         language,
     } = overrides;
@@ -107,6 +108,8 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
     }
     one("camera", camera.as_deref());
     one("compare", compare.as_deref());
+    let transmitted = transmitted.map(|share| share.to_string());
+    one("transmitted", transmitted.as_deref());
     one("enhance", enhance.as_deref());
     one("language", language.as_deref());
     words

@@ -191,18 +191,25 @@ fn scene_as_json(exhibit: &Exhibit, scene: &Scene) -> Value {
         side,
         state,
         overlays,
+        categories,
         compare,
         camera,
         lamps,
         ambient,
+        transmitted,
         exposure,
         enhance,
         language,
     } = scene;
     let sheet = &exhibit.drawings[*drawing];
-    let overlays = overlays
-        .iter()
-        .map(|(index, opacity)| json!({ "id": sheet.overlays[*index].id, "opacity": opacity }));
+    let overlays = overlays.iter().map(|(index, opacity)| {
+        json!({
+            "id": sheet.overlays[*index].id,
+            "opacity": opacity,
+            // Of its legend, from 0; null where all are shown.
+            "categories": categories.get(index),
+        })
+    });
     let lamps = lamps.iter().map(|&lamp| lamp_as_json(exhibit, lamp));
     let Ambient {
         illuminance,
@@ -232,6 +239,7 @@ fn scene_as_json(exhibit: &Exhibit, scene: &Scene) -> Value {
         "camera": camera_as_json(camera),
         "lamps": lamps.collect::<Vec<_>>(),
         "ambient": { "lux": illuminance, "kelvin": kelvin },
+        "transmitted": transmitted,
         "exposure": { "lux": exposed, "level": level, "white_kelvin": white },
         "enhance": {
             "relief_only": relief_only,
