@@ -29,7 +29,7 @@ use bevy::{
 use crate::{
     colour,
     device::{self, NoDevice},
-    manifest::exhibit::{CompareMode, Comparison, Scene},
+    manifest::exhibit::{CompareMode, Comparison, Member, Scene},
     maps::MapError,
     stage::{
         Arranged, Library, Shown, StagePlugin,
@@ -349,7 +349,10 @@ impl Darkroom {
 }
 
 fn has_legend(scene: &Scene) -> bool {
-    let is_coded = |comparison: &Comparison| comparison.mode == CompareMode::Difference;
+    let is_overlay = |member: &Member| matches!(member, Member::Overlay(_));
+    let is_coded = |comparison: &Comparison| {
+        comparison.mode == CompareMode::Difference || comparison.of.iter().any(is_overlay)
+    };
     !scene.enhance.marks().is_empty()
         || scene.overlays.iter().any(|(_, opacity)| *opacity > 0.0)
         || scene.compare.as_ref().is_some_and(is_coded)

@@ -12,6 +12,8 @@ mod colour;
 mod encode;
 #[path = "maps/files.rs"]
 mod files;
+#[path = "maps/fitted.rs"]
+mod fitted;
 #[path = "maps/hostile.rs"]
 mod hostile;
 #[path = "maps/icc.rs"]

@@ -245,6 +245,30 @@ fn states_overlays_and_scenes_go_round() {
 }
 
 #[test]
+fn bands_take_their_turns_but_never_lie_over_each_other() {
+    let (folder, _) = exhibit();
+    let bands = "[[drawing.stack]]\nid = \"light\"\nbands = [ \
+        { file = \"paper.png\", wavelength_nm = 550 }, \
+        { file = \"paper.png\", wavelength_nm = 850 } ]\n";
+    let text = super::MANIFEST.replacen(
+        "[[drawing.overlay]]",
+        &format!("{bands}[[drawing.overlay]]"),
+        1,
+    );
+    fs::write(folder.path().join("exhibit.toml"), text).expect("the manifest is written");
+    let (new, _) = Exhibit::read(folder.path()).expect("it is sound");
+    let mut hand = Hand::new(Arc::new(new), 0, Tier::Draft, PICTURE, false);
+    let mut overlays = Vec::new();
+    for _ in 0..6 {
+        hand.apply(Intent::StepOverlay);
+        let on = hand.shown().scene.overlays.into_iter();
+        overlays.push(on.map(|(overlay, _)| overlay).collect::<Vec<_>>());
+    }
+    let each = [vec![0], vec![1], vec![2], vec![3]];
+    assert_eq!(overlays, [&each[..], &[vec![0, 1], vec![]]].concat());
+}
+
+#[test]
 fn a_new_version_keeps_the_view_and_takes_what_the_hand_left_alone() {
     let (folder, mut hand) = hand("detail");
     hand.apply(Intent::StepState(1));

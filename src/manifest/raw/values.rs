@@ -276,7 +276,7 @@ pattern! {
         "write it in quotation marks, year first";
     /// A wavelength as the key of a table.
     BandKey = "^[0-9]{1,9}([.][0-9]{1,9})?$", is_band_key,
-        "a wavelength in nm",
+        "wavelengths in nm",
         "write the wavelength of a band in nm, such as 700";
     /// What lies over a side: an overlay, or what is shown of a stack.
     LayerName = "^[A-Za-z0-9][A-Za-z0-9_-]{0,63}(/[A-Za-z0-9][A-Za-z0-9_.-]{0,63})?$", is_layer,
