@@ -479,7 +479,7 @@ fn a_profile_is_drawn() {
     let picture = image::open(plot).unwrap().into_rgb8();
     // Nine waves: the line crosses the middle of the plot eighteen times.
     let blue = |x: u32, y: u32| {
-        let [r, _, b] = picture.get_pixel(x, y).0;
+        let [r, _, b] = picture.get_pixel(x, y).0.map(i32::from);
         b > r + 100
     };
     let middle = (0..picture.height())
