@@ -356,7 +356,7 @@ impl<'e> Desk<'e> {
     /// The residual of a picture's control points in mm, 0 where none is known; and what to say
     /// where it should be.
     fn registration(&self, file: &MapFile) -> (f64, Option<String>) {
-        if let Some(residual) = registration_mm(file) {
+        if let Some(residual) = registration_mm(self.exhibit, file) {
             return (residual, None);
         }
         let note = pictures::is_moved(file, self.drawing().size_mm).then(|| {

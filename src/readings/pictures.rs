@@ -1,26 +1,40 @@
 //! Pictures that lie on a side, decoded once and sampled at places in mm.
 
-use std::{
-    collections::{HashMap, hash_map::Entry},
-    path::PathBuf,
-    sync::Arc,
-};
+use std::{path::Path, sync::Arc};
 
 use glam::{DAffine2, DVec2};
 
 use super::{Desk, ReadingError};
 use crate::{
-    manifest::exhibit::{ColourMap, MapFile},
-    maps::{self, MapError, Pyramid},
+    manifest::{
+        Exhibit,
+        exhibit::{ColourMap, MapFile},
+    },
+    maps::{self, MapError, Pyramid, registration::FitKind},
 };
 
 /// A place that is less sheet than this is off it.
 const SHEET: f64 = 0.5;
 
-/// RMS distance of a picture's control points from where they place it, in mm; `None` where it was
-/// placed otherwise.
-pub fn registration_mm(_file: &MapFile) -> Option<f64> {
-    None
+/// RMS distance in mm of the control points of a picture of `exhibit` from where they put it: of
+/// those of a plate, which goes through all of them, from where the others alone put it. `None` where
+/// there are none, or no more than determine its place and so agree whatever they are.
+pub fn registration_mm(exhibit: &Exhibit, file: &MapFile) -> Option<f64> {
+    // All maps of a side lie as the first of them does.
+    let lies_alike = |path: &Path| {
+        let alike = |map: &MapFile| {
+            map.path == path && map.uv_from_side == file.uv_from_side && map.warp == file.warp
+        };
+        path == file.path || exhibit.maps().any(alike)
+    };
+    let mut registered = exhibit.registered.iter();
+    let registered = registered.find(|registered| lies_alike(&registered.file))?;
+    let left_out = registered.left_out?;
+    let known = match registered.fit? {
+        FitKind::ThinPlate => left_out,
+        FitKind::Shift | FitKind::Similarity | FitKind::Affine => registered.residual?,
+    };
+    Some(known.rms_mm)
 }
 
 /// Whether a picture does more than cover its sheet.
@@ -36,7 +50,7 @@ pub(super) fn pixel_mm(file: &MapFile) -> DVec2 {
 }
 
 /// What a picture is decoded as.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Colour,
     Height,
@@ -45,7 +59,7 @@ enum Kind {
 
 /// Decoded pictures.
 #[derive(Default)]
-pub(super) struct Pictures(HashMap<(PathBuf, Kind), Arc<Pyramid>>);
+pub(super) struct Pictures(Vec<(MapFile, Kind, Arc<Pyramid>)>);
 
 /// A picture on a side.
 pub(super) struct Picture {
@@ -62,14 +76,20 @@ impl Pictures {
         kind: Kind,
         load: impl FnOnce() -> Result<Pyramid, MapError>,
     ) -> Result<Picture, ReadingError> {
-        let pyramid = match self.0.entry((file.path.clone(), kind)) {
-            Entry::Occupied(held) => held.get().clone(),
-            Entry::Vacant(place) => {
+        // One file that is bent in two ways is two pictures.
+        let same = |held: &&(MapFile, Kind, Arc<Pyramid>)| {
+            held.0.path == file.path && held.0.warp == file.warp && held.1 == kind
+        };
+        let pyramid = match self.0.iter().find(same) {
+            Some((.., held)) => held.clone(),
+            None => {
                 let loaded = load().map_err(|error| ReadingError::Map {
                     path: file.path.clone(),
                     error,
                 })?;
-                place.insert(Arc::new(loaded)).clone()
+                let loaded = Arc::new(loaded);
+                self.0.push((file.clone(), kind, loaded.clone()));
+                loaded
             }
         };
         Ok(Picture {
@@ -81,13 +101,13 @@ impl Pictures {
 
     /// Linear sRGB.
     pub fn colour(&mut self, map: &ColourMap) -> Result<Picture, ReadingError> {
-        let load = || maps::load_colour(&map.file.path, map.encoding);
+        let load = || maps::load_colour(&map.file, map.encoding);
         self.load(&map.file, Kind::Colour, load)
     }
 
     /// Shares of a declared range.
     pub fn height(&mut self, file: &MapFile) -> Result<Picture, ReadingError> {
-        self.load(file, Kind::Height, || maps::load_height(&file.path))
+        self.load(file, Kind::Height, || maps::load_height(file))
     }
 
     fn outline(&mut self, file: &MapFile) -> Result<Picture, ReadingError> {

@@ -183,6 +183,53 @@ fn a_distance_is_the_same_at_every_zoom_and_tilt_and_from_either_side() {
     }
 }
 
+#[test]
+fn places_are_known_as_well_as_the_control_points_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    plain(folder.path(), false);
+    let manifest = folder.path().join("exhibit.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    // Five pixels to the mm; the last point lies `off` mm beside its place.
+    let sigma = |off: f64, points: usize| {
+        let all = [
+            (20.0, 20.0),
+            (180.0, 20.0),
+            (180.0, 120.0),
+            (20.0 + off, 120.0),
+        ];
+        let lines: Vec<String> = all[..points]
+            .iter()
+            .map(|(x, y)| {
+                let [px, py] = [x * 5.0, y * 5.0];
+                let x = if *y > 100.0 && *x < 100.0 { 20.0 } else { *x };
+                format!("{{ picture = [{px}, {py}], sheet_mm = [{x}, {y}] }}")
+            })
+            .collect();
+        let state = format!(
+            "[[drawing.state]]\nid = \"before\"\n[drawing.state.recto]\nalbedo = \"sheet.png\"\n\
+             control_points = [{}]\n",
+            lines.join(", ")
+        );
+        fs::write(&manifest, format!("{text}{state}")).unwrap();
+        let exhibit = read(folder.path());
+        let scene = Scene {
+            state: Some(0),
+            ..exhibit.scenes[0].clone()
+        };
+        let ruler = Tool::Ruler([DVec2::new(30.0, 30.0), DVec2::new(130.0, 30.0)]);
+        let read = reading(&exhibit, scene, &ruler);
+        (value(&read, "length")[1], read.notes)
+    };
+    let pixel = 0.2 / 6f64.sqrt();
+    assert!((sigma(0.0, 4).0 - pixel).abs() < 1e-3);
+    // An affine fit leaves a quarter of 1 mm at each corner: σ_L² = pixel² + 2 · 0.25²/2.
+    let (found, notes) = sigma(1.0, 4);
+    assert!((found - pixel.hypot(0.25)).abs() < 0.01, "{found}");
+    assert!(notes.is_empty(), "{notes:?}");
+    // Three points agree whatever they are: nothing is known of them.
+    assert!((sigma(0.0, 3).0 - pixel).abs() < 1e-3);
+}
+
 /// A sheet of 40 × 30 mm at 600 dpi with a stroke of 250 µm through its middle, and a relief of
 /// waves of 4 mm and 20 µm.
 fn stroke_and_waves(folder: &Path) -> Exhibit {
@@ -479,7 +526,7 @@ fn a_profile_is_drawn() {
     let picture = image::open(plot).unwrap().into_rgb8();
     // Nine waves: the line crosses the middle of the plot eighteen times.
     let blue = |x: u32, y: u32| {
-        let [r, _, b] = picture.get_pixel(x, y).0;
+        let [r, _, b] = picture.get_pixel(x, y).0.map(i32::from);
         b > r + 100
     };
     let middle = (0..picture.height())
