@@ -118,7 +118,10 @@ impl Pictures {
         let exhibit = self.scene.read(&path)?;
         let link = self.scene.link();
         let overrides = self.scene.overrides();
-        let (exhibit, scenes) = scenes(exhibit, overrides.clone(), all, size)?;
+        let (exhibit, mut scenes) = scenes(exhibit, overrides.clone(), all, size)?;
+        // Files of light hold the numbers of a difference; its colours are for the eye.
+        let compared = scenes.iter_mut().filter_map(|scene| scene.compare.as_mut());
+        compared.for_each(|comparison| comparison.coded = matches!(format, Format::Png));
         if all || verify_maps {
             // A damaged map of the last scene must be found before the first is written.
             verify(&exhibit, &scenes, tier)?;

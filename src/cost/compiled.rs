@@ -17,7 +17,9 @@ use naga::{
 use crate::{
     maps::MAX_PARTICLES,
     needs::Terms,
-    sheet::{PAPER_BASELINES_MODULE, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA_MODULE, material},
+    sheet::{
+        DISPLAY, PAPER_BASELINES_MODULE, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA_MODULE, material,
+    },
 };
 
 const PHYSICS: AssetId<Shader> = AssetId::Uuid {
@@ -31,6 +33,9 @@ const BASELINES: AssetId<Shader> = AssetId::Uuid {
 };
 const MEDIA: AssetId<Shader> = AssetId::Uuid {
     uuid: Uuid::from_u128(4),
+};
+const OF_DISPLAY: AssetId<Shader> = AssetId::Uuid {
+    uuid: Uuid::from_u128(5),
 };
 /// The bind group that Bevy gives to materials.
 const MATERIAL_BIND_GROUP: u32 = bevy::pbr::MATERIAL_BIND_GROUP_INDEX as u32;
@@ -64,6 +69,7 @@ impl Composer {
                 "paper_baselines",
             ),
             (MEDIA, PAPER_MEDIA_MODULE.to_owned(), "paper_media"),
+            (OF_DISPLAY, DISPLAY.to_owned(), "display"),
             (GLUE, glue, "paper_material"),
         ] {
             let path = format!("embedded://recto/{name}.wgsl");

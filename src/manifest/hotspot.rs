@@ -275,7 +275,7 @@ mod tests {
             // A spike that goes out and back again.
             (
                 places(&[[0., 0.], [8., 0.], [4., 0.], [4., 4.]]),
-                vec![Crossing(0, 1)],
+                vec![Crossing(0, 1), Crossing(0, 2)],
             ),
         ] {
             assert_eq!(outline_faults(&outline), expected, "{outline:?}");

@@ -348,6 +348,11 @@ fn a_tiny_sheet_can_be_zoomed() {
     let (folder, _) = exhibit();
     let text = super::MANIFEST.replace("[300.0, 200.0]", "[1.0, 1.0]");
     let text = text.replace("centre_mm = [100, 80], width_mm = 60", "");
+    // Nothing of a usual size lies on it.
+    let tables = text
+        .split("\n[[")
+        .filter(|table| !table.starts_with("drawing.hotspot"));
+    let text = tables.collect::<Vec<_>>().join("\n[[");
     let mut hand = Hand::new(save(&folder, &text), 0, Tier::Draft, PICTURE, false);
     let whole = hand.shown().scene.camera.width_mm;
     let at = DVec2::new(0.3, 0.3);

@@ -107,7 +107,8 @@ fn sharpening_is_as_published() {
 
 #[test]
 fn relief_only_has_no_colour_and_steeper_relief_more_contrast() {
-    let mut enhanced = Enhanced::new("raking");
+    // Under a high lamp, light goes with the slope; a raking one leaves half of each groove dark.
+    let mut enhanced = Enhanced::new("two-inks");
     let plain = enhanced.picture(Enhancement::default());
     let mut relief = |exaggerate: f64| {
         enhanced.picture(Enhancement {
@@ -137,6 +138,6 @@ fn relief_only_has_no_colour_and_steeper_relief_more_contrast() {
         spread(&plain)
     );
     let more = contrast(&twice) / contrast(&once);
-    assert!((1.3..2.2).contains(&more), "{more}");
+    assert!((1.7..2.3).contains(&more), "{more}");
     assert!(is_marked(&once) && is_marked(&twice));
 }
