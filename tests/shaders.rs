@@ -26,6 +26,7 @@ use recto::{
     },
     sheet::{
         PAPER_BASELINES, PAPER_BSDF, PAPER_MATERIAL, PAPER_MEDIA,
+        material::CLIPS,
         uniform::{
             FilmUniform, LightUniform, MapPlace, MeanUniform, MediaUniform, PaperUniform,
             ParticleUniform, RowUniform, SplitUniform, ThroughUniform,
@@ -610,10 +611,7 @@ fn the_material_defines_what_the_glue_asks_for() {
 
 /// Terms that are needed with others only: see `side_needs` in src/needs.rs. The needed stand
 /// before those that need them.
-const NEEDS: [(&str, &str); 17] = [
-    // A side without maps is bare paper.
-    ("NORMAL_MAP", "ALBEDO_MAP"),
-    ("ROUGHNESS_MAP", "ALBEDO_MAP"),
+const NEEDS: [(&str, &str); 14] = [
     ("TRANSMISSION_MAP", "TRANSMISSION"),
     ("OTHER_ALBEDO", "TRANSMISSION"),
     ("OTHER_MATTER", "OTHER_ALBEDO"),
@@ -628,7 +626,6 @@ const NEEDS: [(&str, &str); 17] = [
     ("ANISOTROPIC", "TIER_STUDY"),
     ("SHEEN", "TIER_STUDY"),
     ("RELIEF_SHADOWS", "TIER_STUDY"),
-    ("RELIEF_SHADOWS", "ALBEDO_MAP"),
 ];
 
 /// Whether a side can need these terms.
@@ -827,6 +824,32 @@ fn the_glue_is_valid_for_every_baseline() {
             let module = composer.compose(&[&[tier], more].concat()).unwrap();
             validate(&module).unwrap_or_else(|error| panic!("{tier}: {error}"));
         }
+    }
+}
+
+/// What another member of a comparison shows is spared by the rasteriser: the vertex shader has the
+/// distances, and no fragment shader beside it, which could not read them.
+#[test]
+fn the_clipping_vertex_shader_is_valid() {
+    let mut composer = Composer::new("");
+    for more in [&[][..], &["CURVED"], &["SHARED_UV"]] {
+        let defined = [&["TIER_GALLERY", "COUPLED", "CUT", CLIPS], more].concat();
+        let module = composer.compose(&defined).unwrap();
+        // The one thing that the device must offer: without it the vertex shader has no distances.
+        assert!(validate(&module).is_err());
+        Validator::new(ValidationFlags::all(), Capabilities::CLIP_DISTANCE)
+            .validate(&module)
+            .unwrap_or_else(|error| panic!("{more:?}: {error:?}"));
+        let stages: Vec<naga::ShaderStage> = module.entry_points.iter().map(|e| e.stage).collect();
+        assert_eq!(stages, [naga::ShaderStage::Vertex]);
+        let clips = |binding: &Option<naga::Binding>| {
+            *binding == Some(naga::Binding::BuiltIn(naga::BuiltIn::ClipDistance))
+        };
+        let members = module.types.iter().filter_map(|(_, t)| match &t.inner {
+            naga::TypeInner::Struct { members, .. } => Some(members),
+            _ => None,
+        });
+        assert!(members.flatten().any(|member| clips(&member.binding)));
     }
 }
 

@@ -29,7 +29,7 @@ use crate::{manifest::exhibit::MAX_OVERLAYS, needs::Terms, optics::tier::Tier};
 pub const SORTS: &str = "SORTS";
 /// The name in the vertex shader, and in it alone, that has the rasteriser spare what other members of
 /// a comparison show.
-const CLIPS: &str = "CLIPS";
+pub const CLIPS: &str = "CLIPS";
 /// Binding of the profiles of IES lamps.
 const PROFILE_BINDING: u32 = 11;
 /// Binding of the media of the other side.
