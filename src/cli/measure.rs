@@ -208,7 +208,7 @@ impl Asked {
             let state = match state.transpose() {
                 Ok(state) => state.flatten(),
                 Err(fault) => {
-                    faults.push(fault);
+                    faults.push(*fault);
                     None
                 }
             };
@@ -357,7 +357,7 @@ fn with_state(tool: Tool, state: Option<usize>) -> Tool {
 }
 
 /// A state of the drawing by its id; `None` is the sheet as its sides describe it.
-fn state(exhibit: &Exhibit, scene: &Scene, id: &str) -> Result<Option<usize>, Fault> {
+fn state(exhibit: &Exhibit, scene: &Scene, id: &str) -> Result<Option<usize>, Box<Fault>> {
     let drawing = exhibit.drawing_of(scene);
     if id == NO_STATE {
         return Ok(None);
@@ -368,12 +368,12 @@ fn state(exhibit: &Exhibit, scene: &Scene, id: &str) -> Result<Option<usize>, Fa
         .ok_or_else(|| {
             let ids = drawing.states.iter().map(|state| state.id.as_str());
             let ids = ids.chain([NO_STATE]);
-            fault(
+            Box::new(fault(
                 "--against",
                 quote(id),
                 format!("the id of a state: {}", quoted_list(ids.clone())),
                 did_you_mean(id, ids, "correct it"),
-            )
+            ))
         })
 }
 

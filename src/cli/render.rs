@@ -59,7 +59,7 @@ pub struct Arguments {
     tier: Tier,
     /// A figure that can be made again: a scale bar on the .png, and beside each picture a .json that
     /// says what it was made from, how large and how exactly, and by which command
-    #[arg(long)]
+    #[arg(long, conflicts_with = "save_scene")]
     figure: bool,
     /// Write the scene into the manifest as well, by this id; one that has it is replaced
     #[arg(long, value_name = "ID", conflicts_with = "all_scenes")]

@@ -86,12 +86,15 @@ impl Reflectance {
     }
 }
 
+/// Of each texel its sums and its coverage; the size, and how many pixels were missing.
+type Sums<const C: usize> = (Vec<([f32; C], f32)>, [usize; 2], u64);
+
 /// Calls `add` with a row of sums, their coverage so far, and reflectance and coverage of each
 /// band there; the texels are those of the first band.
 fn sums<const C: usize>(
     bands: &[BandPicture<'_>],
     add: impl Fn(usize, &mut [f32; C], f32) + Sync,
-) -> Result<(Vec<([f32; C], f32)>, [usize; 2], u64), MapError> {
+) -> Result<Sums<C>, MapError> {
     let mut all: Vec<([f32; C], f32)> = Vec::new();
     let (mut size, mut missing) = ([1, 1], 0);
     for (k, band) in bands.iter().enumerate() {

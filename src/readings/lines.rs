@@ -20,7 +20,7 @@ impl Desk<'_> {
         let transmission = self.drawing().transmission.clone();
         let (file, picture, seen): (MapFile, _, fn([f64; 4]) -> f64) = match transmission {
             Some(file) => {
-                let file = self.from_recto(file);
+                let file = self.as_seen(file);
                 let picture = self.pictures.height(&file)?;
                 (file, picture, |[share, ..]| share)
             }

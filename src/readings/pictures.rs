@@ -169,7 +169,7 @@ impl Desk<'_> {
     }
 
     /// A picture that lies in the recto's frame, in that of the side that is seen.
-    pub(super) fn from_recto(&self, mut file: MapFile) -> MapFile {
+    pub(super) fn as_seen(&self, mut file: MapFile) -> MapFile {
         file.uv_from_side *= self.drawing().recto_from(self.scene.side);
         file
     }
@@ -179,7 +179,7 @@ impl Desk<'_> {
         let size_mm = self.drawing().size_mm;
         let outline = match self.drawing().outline.clone() {
             Some(file) => {
-                let file = self.from_recto(file);
+                let file = self.as_seen(file);
                 Some(self.pictures.outline(&file)?)
             }
             None => None,

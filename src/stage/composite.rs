@@ -176,6 +176,14 @@ pub struct Composite {
     pictures: Vec<Handle<Image>>,
     entities: Vec<Entity>,
     material: Option<Handle<CompositeMaterial>>,
+    fresh: bool,
+}
+
+impl Composite {
+    /// Whether something was built in this frame: it takes some frames to reach the picture.
+    pub fn is_fresh(&self) -> bool {
+        self.fresh
+    }
 }
 
 /// What it is made from.
@@ -193,6 +201,9 @@ pub fn compose(
     mut composite: ResMut<Composite>,
     mut workshop: Workshop,
 ) {
+    if composite.fresh {
+        composite.fresh = false;
+    }
     // Until its maps are there, the last picture stays.
     if !arranged.is_settled() {
         return;
@@ -205,15 +216,11 @@ pub fn compose(
     let size = size.map_or(UVec2::ONE, |size| size.0.max(UVec2::ONE));
     if composite.pictures.len() != count || (composite.size != size && count > 0) {
         for entity in composite.entities.drain(..) {
-            let mut entity = commands.entity(entity);
-            if count == 0 {
-                entity.insert(Retired::default());
-            } else {
-                entity.despawn();
-            }
+            commands.entity(entity).insert(Retired::default());
         }
         *composite = Composite {
             size,
+            fresh: true,
             ..Composite::default()
         };
         if count > 0 {

@@ -21,7 +21,9 @@ const STEP: f64 = 0.05;
 /// Factor by which one press magnifies a loupe or amplifies a difference.
 const FACTOR: f64 = 1.25;
 const MAGNIFY: [f64; 2] = [1.0, 20.0];
-const FULL: [f64; 2] = [0.01, 100.0];
+/// Of a difference's scale, in ΔE00 and of luminance, as manifests allow.
+const FULL_DELTA_E: [f64; 2] = [0.01, 100.0];
+const FULL_LUMINANCE: [f64; 2] = [0.01, 1.0];
 /// Degrees by which one press turns a curtain.
 const TURN_DEG: f64 = 15.0;
 /// Of a loupe, as shares of the picture's height.
@@ -72,10 +74,9 @@ pub fn shift(comparison: &mut Comparison, by: f64) {
             comparison.magnify = (comparison.magnify * FACTOR.powf(by)).clamp(least, most);
         }
         CompareMode::Difference => {
-            let [least, most] = FULL;
-            let full = match &mut comparison.full_luminance {
-                Some(full) => full,
-                None => &mut comparison.full_delta_e,
+            let (full, [least, most]) = match &mut comparison.full_luminance {
+                Some(full) => (full, FULL_LUMINANCE),
+                None => (&mut comparison.full_delta_e, FULL_DELTA_E),
             };
             *full = (*full * FACTOR.powf(-by)).clamp(least, most);
         }
@@ -97,7 +98,10 @@ pub fn turn(comparison: &mut Comparison, by: f64) {
         CompareMode::Difference => {
             // From ΔE00 to luminance and back.
             comparison.full_luminance = match comparison.full_luminance {
-                None => Some(comparison.full_delta_e / 100.0),
+                None => {
+                    let [least, most] = FULL_LUMINANCE;
+                    Some((comparison.full_delta_e / 100.0).clamp(least, most))
+                }
                 Some(_) => None,
             };
         }

@@ -79,7 +79,7 @@ impl Foresight {
 
     fn ask(&mut self, shown: &Shown, size: [u32; 2], waker: Option<Waker>) {
         let exhibit = shown.exhibit.clone();
-        let scene = shown.scene.clone();
+        let scene = predicted(&shown.scene);
         self.asked = Some((exhibit.clone(), scene.clone()));
         let (sender, maps, table) = (self.sender.clone(), self.maps.clone(), self.table.clone());
         // Not among rayon's threads: the forecast waits for these while it holds the maps.
@@ -99,8 +99,17 @@ impl Foresight {
 
     fn is_asked(&self, shown: &Shown) -> bool {
         self.asked.as_ref().is_some_and(|(exhibit, scene)| {
-            Arc::ptr_eq(exhibit, &shown.exhibit) && *scene == shown.scene
+            Arc::ptr_eq(exhibit, &shown.exhibit) && *scene == predicted(&shown.scene)
         })
+    }
+}
+
+/// What is predicted of a scene: its own sheet. Members that take turns, and a curtain that is drawn,
+/// ask for nothing new.
+fn predicted(scene: &Scene) -> Scene {
+    Scene {
+        compare: None,
+        ..scene.clone()
     }
 }
 

@@ -280,7 +280,9 @@ impl Hand {
                 }
             }
             Intent::Transmit(by) => {
-                self.view.transmitted = (self.view.transmitted + by).clamp(0.0, 1.0);
+                // In hundredths, so that it comes back to none.
+                let share = ((self.view.transmitted + by) * 100.0).round() / 100.0;
+                self.view.transmitted = share.clamp(0.0, 1.0);
             }
             Intent::ReliefOnly => {
                 let enhance = &mut self.view.enhance;

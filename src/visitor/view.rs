@@ -112,7 +112,21 @@ impl View {
             view.lamp = self.lamp;
         }
         // What is compared is known by its place: it is kept where the places are the same.
-        if self.compare != written.compare && is_alike(before, after) {
+        let at_first = |view: &Self| {
+            let mut compare = view.compare.clone();
+            // Whose turn it is passes by itself.
+            compare
+                .iter_mut()
+                .for_each(|comparison| comparison.turn = 0);
+            compare
+        };
+        let same_drawings = old.drawings.len() == new.drawings.len()
+            && old
+                .drawings
+                .iter()
+                .zip(&new.drawings)
+                .all(|(a, b)| a.id == b.id);
+        if at_first(self) != at_first(&written) && same_drawings && is_alike(before, after) {
             view.compare = self.compare.clone();
         }
         if self.enhance != written.enhance {

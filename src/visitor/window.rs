@@ -42,7 +42,7 @@ use crate::{
     stage::{
         Arranged, Library, Shown, StagePlugin, StageSet, Waker,
         camera::{camera_bundle, without_clusters},
-        composite::{PictureCamera, PictureSize},
+        composite::{Composite, PictureCamera, PictureSize},
         legend::TextCamera,
         reload::{ReloadPlugin, Reread},
         say,
@@ -409,7 +409,7 @@ struct Pace {
 /// Draws on while something moves or is on its way, and then not at all.
 fn rest(
     (shown, texts): (Res<Shown>, Res<Texts>),
-    (arranged, library): (Res<Arranged>, Res<Library>),
+    (arranged, library, composite): (Res<Arranged>, Res<Library>, Res<Composite>),
     time: Res<Time<Real>>,
     mut hand: ResMut<Hand>,
     mut pace: ResMut<Pace>,
@@ -427,9 +427,9 @@ fn rest(
     }
     pace.begun |= settled;
     pace.left = pace.left.saturating_sub(1);
-    if (!settled && !pace.stuck) || arranged.is_fresh() {
+    if (!settled && !pace.stuck) || arranged.is_fresh() || composite.is_fresh() {
         pace.left = SETTLING_FRAMES;
-    } else if shown.is_changed() || texts.is_changed() || hand.is_moving() || hand.takes_turns() {
+    } else if shown.is_changed() || texts.is_changed() || hand.is_moving() {
         pace.left = pace.left.max(CHANGE_FRAMES);
     } else if pace.left == 0 && hand.is_hurried() {
         // At rest, the picture refines; a hand that only pauses does not wait for that.
@@ -437,6 +437,8 @@ fn rest(
             hand.hurry(false);
         }
         pace.left = CHANGE_FRAMES;
+    } else if hand.takes_turns() {
+        pace.left = pace.left.max(CHANGE_FRAMES);
     }
     let loading = !settled && library.is_busy();
     if loading && !pace.begun {

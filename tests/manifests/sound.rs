@@ -499,7 +499,7 @@ fn a_stack_is_its_bands_and_what_is_made_of_them() {
 
 #[test]
 fn a_place_has_a_value_in_every_layer() {
-    let folder = Folder::with(&format!(
+    let folder = Folder::with(format!(
         "{SMALL}[[drawing.overlay]]\nid = \"map\"\nfile = \"recto.png\"\nkind = \"categorical\"\n\
          legend = [ {{ colour = \"#d55e00\", label = \"Tear\" }}, \
          {{ id = \"paper\", colour = \"#c8beaa\", label = \"Paper\" }} ]\n\

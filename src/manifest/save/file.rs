@@ -17,9 +17,15 @@ pub fn writable(path: &Path) -> Result<PathBuf, SaveError> {
     let real = path.canonicalize().map_err(failed)?;
     let metadata = fs::metadata(&real).map_err(failed)?;
     // A file beside it could take its place all the same: that is not what was meant.
-    match metadata.permissions().readonly() {
-        true => Err(SaveError::ReadOnly(path.to_owned())),
-        false => Ok(real),
+    if metadata.permissions().readonly() {
+        return Err(SaveError::ReadOnly(path.to_owned()));
+    }
+    match fs::OpenOptions::new().append(true).open(&real) {
+        Ok(_) => Ok(real),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
+            Err(SaveError::ReadOnly(path.to_owned()))
+        }
+        Err(error) => Err(failed(error)),
     }
 }
 

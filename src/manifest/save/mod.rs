@@ -126,6 +126,17 @@ impl Exhibit {
             id: id.clone(),
             ..scene.clone()
         };
+        // Of overlays that are off, nobody sees which categories were.
+        let is_on = |index: &usize| scene.overlays.iter().any(|(on, _)| on == index);
+        let off: Vec<usize> = scene
+            .categories
+            .keys()
+            .filter(|i| !is_on(i))
+            .copied()
+            .collect();
+        for index in off {
+            scene.categories.remove(&index);
+        }
         if let Some(comparison) = &mut scene.compare {
             // Whose turn it is passes, and a difference in numbers is a file's.
             (comparison.turn, comparison.coded) = (0, true);
@@ -151,6 +162,14 @@ impl Exhibit {
         let (read, _) = Self::parse(&self.manifest, &self.folder, &new)?;
         if !read.has(&scene, self) {
             return Err(unwritable("it would not be the same view"));
+        }
+        // Scenes that are like the one that is replaced would change with it.
+        let others = there.scenes.iter().filter(|other| other.id != id);
+        if let Some(other) = others.into_iter().find(|other| !read.has(other, &there)) {
+            return Err(unwritable(&format!(
+                "the scene \"{}\", which is like it, would change; save under another id",
+                other.id
+            )));
         }
         Ok(Draft { path, old, new, id })
     }

@@ -31,6 +31,9 @@ use crate::units::{Degrees, Kelvin, Lux};
 /// How long a stop of a tour lasts that does not say.
 const DEFAULT_STOP_S: f64 = 10.0;
 
+/// As [`Scene::overlays`] and [`Scene::categories`].
+type ShownOverlays = (Vec<(usize, f64)>, BTreeMap<usize, Vec<usize>>);
+
 /// How many scenes can take over from each other in a row.
 const DEEPEST_LIKE: usize = 32;
 
@@ -279,7 +282,7 @@ impl Validator<'_, '_> {
         trail: &Trail,
         side: SideName,
         facts: &DrawingFacts,
-    ) -> Option<(Vec<(usize, f64)>, BTreeMap<usize, Vec<usize>>)> {
+    ) -> Option<ShownOverlays> {
         let mut shown = Some((Vec::<(usize, f64)>::new(), BTreeMap::new()));
         for (i, overlay) in raw.overlays.iter().flat_map(List::iter) {
             let (id, opacity, categories, trail) = match overlay {

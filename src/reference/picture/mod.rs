@@ -427,6 +427,10 @@ pub fn left_out(exhibit: &Exhibit, scene: &Scene) -> Vec<String> {
         "the reference compares nothing: it walks the scene's own sheet",
     );
     say(
+        !scene.enhance.marks().is_empty(),
+        "the reference enhances nothing: it walks the sheet as it is",
+    );
+    say(
         scene.overlays.iter().any(|(_, opacity)| *opacity > 0.0),
         "the reference draws no legend beside overlays",
     );
