@@ -119,10 +119,11 @@ pub fn run(mut arguments: Arguments) -> Result<(), Failure> {
             ));
         }
     }
-    for path in arguments.plot.iter().chain(&arguments.csv) {
-        output::can_write_file(path)?;
-    }
+    arguments.csv.as_deref().map(options::csv).transpose()?;
     let exhibit = arguments.scene.read(&arguments.exhibit)?;
+    for path in arguments.plot.iter().chain(&arguments.csv) {
+        output::can_write_file(path, &exhibit)?;
+    }
     let json = arguments.json;
     let measured = Asked::new(&arguments).measure(arguments, exhibit);
     if let (true, Err(Failure::Faults(faults))) = (json, &measured) {

@@ -138,6 +138,17 @@ pub fn written(overrides: &Overrides) -> Vec<String> {
     words
 }
 
+/// Refuses a name for a table that does not end in .csv.
+pub fn csv(path: &Path) -> Result<(), Failure> {
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("csv") => Ok(()),
+        _ => Err(Failure::Usage(format!(
+            "--csv {}: the file's name must end in .csv",
+            path.display()
+        ))),
+    }
+}
+
 pub fn side() -> impl TypedValueParser<Value = SideName> {
     const SIDES: [SideName; 2] = [SideName::Recto, SideName::Verso];
     PossibleValuesParser::new(SIDES.map(SideName::word)).try_map(|word| {

@@ -11,6 +11,7 @@ use std::{
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Failure;
+use crate::manifest::Exhibit;
 
 /// Writes a result and a newline to standard output.
 pub fn result(text: impl Display) -> Result<(), Failure> {
@@ -26,10 +27,20 @@ pub fn progress(steps: u64) -> ProgressBar {
     ProgressBar::new(steps).with_style(style)
 }
 
-/// Finds out, before any work is done, whether the file `path` could be written.
-pub fn can_write_file(path: &Path) -> Result<(), Failure> {
+/// Finds out, before any work is done, whether the file `path` could be written, and that it is none
+/// of those that `exhibit` is made of.
+pub fn can_write_file(path: &Path, exhibit: &Exhibit) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(refused(path, "is a folder; name a file in it"));
+    }
+    // Where nothing is yet, nothing is lost.
+    if let Ok(there) = path.canonicalize() {
+        let maps = exhibit.maps().map(|map| map.path.as_path());
+        let mut own = maps.chain([exhibit.manifest.as_path()]);
+        if own.any(|own| own.canonicalize().is_ok_and(|own| own == there)) {
+            let why = "is part of the exhibit and would be lost; choose another name";
+            return Err(refused(path, why));
+        }
     }
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,

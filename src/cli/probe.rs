@@ -98,7 +98,8 @@ struct StackReport {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let exhibit = super::read(&arguments.exhibit)?;
     if let Some(file) = &arguments.csv {
-        output::can_write_file(file)?;
+        options::csv(file)?;
+        output::can_write_file(file, &exhibit)?;
     }
     let drawing = named(
         "--drawing",

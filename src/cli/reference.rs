@@ -114,7 +114,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
                 file.display()
             )));
         }
-        output::can_write_file(file)?;
+        output::can_write_file(file, &commission.exhibit)?;
     }
     let exposure = Exposure {
         size,

@@ -131,8 +131,11 @@ impl Pictures {
         }
         if all {
             output::can_write_folder(&out)?;
+            for scene in &scenes {
+                output::can_write_file(&out.join(&scene.id).with_added_extension("png"), &exhibit)?;
+            }
         } else {
-            output::can_write_file(&out)?;
+            output::can_write_file(&out, &exhibit)?;
         }
         Ok(Commission {
             exhibit,

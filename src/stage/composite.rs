@@ -216,7 +216,13 @@ pub fn compose(
     let size = size.map_or(UVec2::ONE, |size| size.0.max(UVec2::ONE));
     if composite.pictures.len() != count || (composite.size != size && count > 0) {
         for entity in composite.entities.drain(..) {
-            commands.entity(entity).insert(Retired::default());
+            let mut entity = commands.entity(entity);
+            // Two last passes would cover each other.
+            if count == 0 {
+                entity.insert(Retired::default());
+            } else {
+                entity.despawn();
+            }
         }
         *composite = Composite {
             size,

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 
 use super::{comparing, hand::Hand};
 use crate::{
-    manifest::exhibit::Hotspot,
+    manifest::exhibit::{Hotspot, Member},
     optics::tier::Tier,
     stage::{
         Shown,
@@ -199,12 +199,11 @@ pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
         tier if tier == Tier::default() => "",
         tier => tier.name(),
     };
-    let compared = shown
-        .scene
-        .compare
-        .as_ref()
-        .map(comparing::words)
-        .unwrap_or_default();
+    let compared = shown.scene.compare.as_ref().map(|comparison| {
+        let names: Vec<String> = comparison.of.iter().map(|of| name(shown, *of)).collect();
+        format!("{}: {}", comparing::words(comparison), names.join(" | "))
+    });
+    let compared = compared.unwrap_or_default();
     let through = match shown.scene.transmitted {
         0.0 => String::new(),
         share => format!("{:.0} % of the light through the sheet", share * 100.0),
@@ -243,6 +242,24 @@ fn hotspot_lines(shown: &Shown, hotspot: &Hotspot) -> Vec<String> {
     ];
     lines.retain(|line| !line.is_empty());
     lines
+}
+
+/// What a member of a comparison is called.
+fn name(shown: &Shown, member: Member) -> String {
+    let drawing = shown.exhibit.drawing_of(&shown.scene);
+    let (title, id) = match member {
+        Member::State(state) => (&drawing.states[state].title, &drawing.states[state].id),
+        Member::Side(side) => return side.word().to_owned(),
+        Member::Overlay(overlay) => {
+            let overlay = &drawing.overlays[overlay];
+            (&overlay.title, &overlay.id)
+        }
+        Member::Drawing(other) => {
+            let other = &shown.exhibit.drawings[other];
+            (&other.title, &other.id)
+        }
+    };
+    shown.text(title).unwrap_or(id).to_owned()
 }
 
 fn joined(parts: &[&str]) -> String {

@@ -118,12 +118,12 @@ pub fn take_turns(comparison: &mut Comparison) {
 pub fn words(comparison: &Comparison) -> String {
     let share = |share: f64| format!("{:.0} %", share * 100.0);
     match comparison.mode {
-        CompareMode::Curtain => "curtain: drag it, or , and .".into(),
+        CompareMode::Curtain => "curtain".into(),
         CompareMode::SideBySide => "side by side".into(),
         CompareMode::Blend => format!("blend, {} of the second", share(comparison.at)),
         CompareMode::Loupe => format!("loupe, {:.1} times", comparison.magnify),
         CompareMode::Difference => "difference".into(),
-        CompareMode::Flicker => format!("in turns: {}", comparison.turn + 1),
+        CompareMode::Flicker => format!("in turns, number {}", comparison.turn + 1),
         CompareMode::Glass => format!(
             "through the sheet, {} of the other side",
             share(comparison.at)

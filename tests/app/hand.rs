@@ -549,7 +549,50 @@ fn enhancement_and_light_through_the_sheet_are_steps_of_keys() {
         hand.apply(Intent::Transmit(0.1));
     }
     assert_eq!(hand.shown().scene.transmitted, 1.0);
+    for _ in 0..10 {
+        hand.apply(Intent::Transmit(-0.1));
+    }
+    assert_eq!(hand.shown().scene.transmitted, 0.0, "none is none");
+    hand.apply(Intent::Transmit(0.3));
     hand.apply(Intent::Home);
     assert_eq!(hand.shown().scene.enhance.marks().len(), 0);
     assert_eq!(hand.shown().scene.transmitted, 0.0);
+}
+
+#[test]
+fn a_difference_stays_within_what_a_manifest_can_say() {
+    let (_folder, mut hand) = comparing(5);
+    assert_eq!(comparison(&hand).mode, CompareMode::Difference);
+    hand.apply(Intent::TurnCompare(1.0));
+    for (by, end) in [(-1.0, 1.0), (1.0, 0.01)] {
+        for _ in 0..40 {
+            hand.apply(Intent::ShiftCompare(by));
+        }
+        assert_eq!(comparison(&hand).full_luminance, Some(end));
+    }
+    hand.apply(Intent::TurnCompare(1.0));
+    assert_eq!(comparison(&hand).full_luminance, None);
+}
+
+#[test]
+fn a_comparison_with_a_drawing_that_is_gone_goes_with_it() {
+    let (folder, _) = exhibit();
+    let scene = "id = \"whole\"\n";
+    let compare = "compare = { mode = \"flicker\", of = [\"drawing:sheet\", \"drawing:page\"] }\n";
+    let text = super::MANIFEST.replace(scene, &format!("{scene}{compare}"));
+    let mut hand = Hand::new(save(&folder, &text), 0, Tier::Draft, PICTURE, false);
+    for _ in 0..2 {
+        hand.advance(0.3, true);
+    }
+    assert_eq!(comparison(&hand).turn, 1);
+    // An edit of the comparison is taken in, whosever turn it is.
+    hand.replace(save(&folder, &text.replace("flicker", "curtain")));
+    assert_eq!(comparison(&hand).mode, CompareMode::Curtain);
+    hand.replace(save(&folder, &text));
+    hand.advance(0.6, true);
+    let tables = super::MANIFEST.split("\n[[");
+    let tables: Vec<&str> = tables.filter(|table| !table.contains("\"page\"")).collect();
+    hand.replace(save(&folder, &tables.join("\n[[")));
+    assert_eq!(hand.shown().scene.compare, None);
+    assert_eq!(hand.shown().members().len(), 1);
 }

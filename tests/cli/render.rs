@@ -185,3 +185,20 @@ fn a_current_folder_that_was_deleted_is_refused() {
     let stderr = code(&output, 1);
     assert!(stderr.starts_with("recto: .: "), "{stderr}");
 }
+
+#[test]
+fn no_output_takes_the_place_of_what_the_exhibit_is_made_of() {
+    let sheet = Sheet::new();
+    let [manifest, map] = ["exhibit.toml", "sheet.png"].map(|name| sheet.exhibit().join(name));
+    let before = [&manifest, &map].map(|file| fs::read(file).unwrap());
+    let exhibit = sheet.exhibit();
+    let exhibit = exhibit.to_str().unwrap();
+    let out = map.to_str().unwrap();
+    let over_map = super::run(&["render", exhibit, "--size", "16x12", "--out", out]);
+    let stderr = code(&over_map, 1);
+    assert!(stderr.contains("is part of the exhibit"), "{stderr}");
+    let table = manifest.to_str().unwrap();
+    let ruler = ["measure", exhibit, "--ruler", "1,1:5,5", "--csv", table];
+    code(&super::run(&ruler), 2);
+    assert!(before == [&manifest, &map].map(|file| fs::read(file).unwrap()));
+}

@@ -618,3 +618,35 @@ fn a_link_that_is_none_is_refused_in_words() {
     );
     assert_eq!(faults.iter().count(), 1);
 }
+
+const LIKE: &str = "[exhibit]\ntitle = \"One\"\n[[drawing]]\nid = \"sheet\"\nsize_mm = [285, 194]\n\
+    recto.albedo = \"recto.png\"\n[[scene]]\nid = \"a\"\n[[scene]]\nid = \"b\"\nlike = \"a\"\n";
+
+#[test]
+fn a_scene_that_another_is_like_is_not_replaced_under_it() {
+    let folder = Folder::with(LIKE);
+    let exhibit = read(&folder);
+    let mut scene = exhibit.scenes[0].clone();
+    scene.camera.tilt = Degrees(30.0);
+    let words = refused(&exhibit, &scene, "a");
+    assert!(words.contains("\"b\""), "{words}");
+    assert_eq!(text(&folder), LIKE);
+    // Beside it, it changes nothing.
+    saved(&folder, &exhibit, &called(&scene, "c"));
+}
+
+#[test]
+fn categories_of_an_overlay_that_is_off_are_no_part_of_a_view() {
+    let folder = Folder::with(LIKE);
+    let exhibit = read(&folder);
+    let mut scene = called(&exhibit.scenes[0], "c");
+    scene.categories.insert(0, vec![0]);
+    draft(&exhibit, &scene, "c").write().unwrap();
+    let (_, again) = read(&folder)
+        .scene("c")
+        .map(|(i, s)| (i, s.clone()))
+        .unwrap();
+    assert!(again.categories.is_empty());
+    scene.categories.clear();
+    assert_eq!(again.camera, scene.camera);
+}
