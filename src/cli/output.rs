@@ -33,20 +33,27 @@ pub fn can_write_file(path: &Path, exhibit: &Exhibit) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(refused(path, "is a folder; name a file in it"));
     }
-    // Where nothing is yet, nothing is lost.
-    if let Ok(there) = path.canonicalize() {
-        let maps = exhibit.maps().map(|map| map.path.as_path());
-        let mut own = maps.chain([exhibit.manifest.as_path()]);
-        if own.any(|own| own.canonicalize().is_ok_and(|own| own == there)) {
-            let why = "is part of the exhibit and would be lost; choose another name";
-            return Err(refused(path, why));
-        }
-    }
+    spares(exhibit, path)?;
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
     can_write_into(folder)
+}
+
+/// Finds out that what is written to `path` takes the place of nothing that `exhibit` is made of.
+pub fn spares(exhibit: &Exhibit, path: &Path) -> Result<(), Failure> {
+    // Where nothing is yet, nothing is lost.
+    let Ok(there) = path.canonicalize() else {
+        return Ok(());
+    };
+    let maps = exhibit.maps().map(|map| map.path.as_path());
+    let mut own = maps.chain([exhibit.manifest.as_path()]);
+    if own.any(|own| own.canonicalize().is_ok_and(|own| own == there)) {
+        let why = "is part of the exhibit and would be lost; choose another name";
+        return Err(refused(path, why));
+    }
+    Ok(())
 }
 
 /// Finds out whether the folder `path` could be made, if it is absent, and written to.

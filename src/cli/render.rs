@@ -132,7 +132,7 @@ impl Pictures {
         if all {
             output::can_write_folder(&out)?;
             for scene in &scenes {
-                output::can_write_file(&out.join(&scene.id).with_added_extension("png"), &exhibit)?;
+                output::spares(&exhibit, &out.join(&scene.id).with_added_extension("png"))?;
             }
         } else {
             output::can_write_file(&out, &exhibit)?;
