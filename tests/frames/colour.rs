@@ -110,7 +110,7 @@ fn cyan_keeps_its_negative_red_in_the_float_file() {
         .enumerate()
         .find(|(_, (name, _))| name == "cyan")
         .expect("cyan");
-    let file = render(&fixture, "gallery", "chart.exr");
+    let file = render(&fixture, "gallery", "light.exr");
     let frame = exr::prelude::read_first_rgba_layer_from_file(
         file,
         |size, _| (size.width(), vec![[0f32; 3]; size.width() * size.height()]),
