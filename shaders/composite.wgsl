@@ -1,5 +1,6 @@
 // One picture of those of two members, or of one that is enhanced, pixel by pixel. Its f64 twins
-// are in src/colour.rs (`lab_from_linear`, `delta_e00`) and tests/frames/compare.rs.
+// are `lab_from_linear` and `luminance` in src/colour.rs and CIEDE2000 in the crate palette, against which
+// tests/frames/compare.rs holds it; sharpening is held against tests/frames/enhance.rs.
 
 #ifdef DISPLAY
 #import "embedded://recto/display.wgsl"::{dithered}

@@ -11,9 +11,9 @@
 //! | [`measure`] | lengths, profiles, laid lines, strokes and colours, each with its uncertainty |
 //! | [`manifest`] | `exhibit.toml` → a validated [`Exhibit`](manifest::Exhibit), or every fault at once |
 //! | [`needs`] | what a scene requires and why: terms, maps, sides |
-//! | [`sheet`] | the sheet in Bevy: mesh, the one material, the only narrowing from f64 to f32 |
-//! | [`stage`] | what is shown: loading, sides, camera, legend, reload on save |
-//! | [`visitor`] | the window: hand, lamp, keys, caption |
+//! | [`sheet`] | the sheet in Bevy: mesh, the one material, the narrowing from f64 to f32 (the last pass of [`stage`] has its own) |
+//! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
+//! | [`visitor`] | the window: hand, lamp, keys, caption, hotspots, views saved |
 //! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
 //! | [`figure`] | a print that can be made again: its scale bar and its sidecar |
