@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::lamp::LampPlace;
+use glam::DVec2;
+
+use super::{comparing, intent::Intent, lamp::LampPlace};
 use crate::manifest::exhibit::{
     Camera, Comparison, Drawing, Enhancement, Exhibit, MAX_OVERLAYS, OverlayKind, Scene, SideName,
 };
@@ -11,6 +13,13 @@ use crate::manifest::exhibit::{
 const OPACITY: f64 = 0.7;
 /// An overlay that is on can be made no fainter.
 const FAINTEST: f64 = 0.1;
+
+/// The relief is made no steeper.
+const STEEPEST: f64 = 8.0;
+/// Levels between which a key stretches the contrast: most drawings on old paper lie between them.
+const STRETCH: DVec2 = DVec2::new(0.1, 0.75);
+/// Of sharpening, by a key.
+const SHARPEN: f64 = 0.6;
 
 /// An overlay as the hand left it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,6 +145,57 @@ impl View {
             view.transmitted = self.transmitted;
         }
         view
+    }
+
+    /// Follows a wish that is about nothing else.
+    pub fn follow(&mut self, drawing: &Drawing, intent: Intent) {
+        match intent {
+            Intent::StepState(by) => {
+                self.step_state(drawing, by);
+            }
+            Intent::StepOverlay => {
+                self.step_overlay(drawing);
+            }
+            Intent::Opacity(by) => self.fade(by),
+            Intent::ShiftCompare(by) => {
+                if let Some(comparison) = &mut self.compare {
+                    comparing::shift(comparison, by);
+                }
+            }
+            Intent::TurnCompare(by) => {
+                if let Some(comparison) = &mut self.compare {
+                    comparing::turn(comparison, by);
+                }
+            }
+            Intent::Transmit(by) => {
+                // In hundredths, so that it comes back to none.
+                let share = ((self.transmitted + by) * 100.0).round() / 100.0;
+                self.transmitted = share.clamp(0.0, 1.0);
+            }
+            Intent::ReliefOnly => {
+                let enhance = &mut self.enhance;
+                enhance.relief_only = !enhance.relief_only;
+            }
+            Intent::Exaggerate => {
+                let enhance = &mut self.enhance;
+                enhance.exaggerate = match enhance.exaggerate {
+                    times if times >= STEEPEST => 1.0,
+                    times => 2.0 * times,
+                };
+            }
+            Intent::Stretch => {
+                let enhance = &mut self.enhance;
+                enhance.stretch = match enhance.stretch {
+                    None => Some(STRETCH),
+                    Some(_) => None,
+                };
+            }
+            Intent::Sharpen => {
+                let enhance = &mut self.enhance;
+                enhance.sharpen = if enhance.sharpen > 0.0 { 0.0 } else { SHARPEN };
+            }
+            _ => {}
+        }
     }
 
     /// Whether `other` shows the same of the sheet, wherever eye and lamp are: these need no

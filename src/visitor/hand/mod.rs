@@ -1,10 +1,12 @@
 //! The hand that holds the sheet: one state, changed by intents and by time, and what is to be
 //! shown of it. No device, window or engine is needed to move it.
 
+mod carrying;
+
 use std::{collections::BTreeSet, f64::consts::PI, sync::Arc};
 
 use bevy::prelude::Resource;
-use glam::{DQuat, DVec2, DVec3};
+use glam::DVec2;
 
 use super::{
     comparing::{self, TURN_S},
@@ -16,8 +18,7 @@ use super::{
 };
 use crate::{
     manifest::{
-        exhibit::{Camera, CompareMode, Comparison, Drawing, Exhibit, Scene, SideName},
-        eye::Eye,
+        exhibit::{CompareMode, Comparison, Drawing, Exhibit, Scene},
         frames::other_side,
     },
     optics::tier::Tier,
@@ -27,14 +28,6 @@ use crate::{
 
 /// A hand turns the sheet no further, in degrees: its other side stays hidden.
 const FARTHEST_TURN_DEG: f64 = 60.0;
-/// Degrees by which the sheet turns when a hand crosses half the picture.
-const TURN_DEG: f64 = 70.0;
-/// Seen at this angle from straight above, in degrees, a sheet can show its other side.
-const STEEP_DEG: f64 = 75.0;
-/// Narrowest picture, in mm.
-const NARROWEST_MM: f64 = 2.0;
-/// A picture narrower than the whole sheet by this factor is zoomed in.
-const ZOOMED: f64 = 0.85;
 /// A zoom this near its target, relatively, has arrived.
 const ARRIVED: f64 = 1e-3;
 /// A turned sheet this near to rest, in degrees and degrees per second, rests.
@@ -43,13 +36,6 @@ const REST_DEG: f64 = 0.02;
 const FLIP_STEP_S: f64 = 0.1;
 /// A glide that would go on by less of the picture's width has ended.
 const GLIDE_END: f64 = 5e-4;
-
-/// The relief is made no steeper.
-const STEEPEST: f64 = 8.0;
-/// Levels between which a key stretches the contrast: most drawings on old paper lie between them.
-const STRETCH: DVec2 = DVec2::new(0.1, 0.75);
-/// Of sharpening, by a key.
-const SHARPEN: f64 = 0.6;
 
 fn takes_turns(comparison: &Comparison) -> bool {
     comparison.mode == CompareMode::Flicker
@@ -254,57 +240,24 @@ impl Hand {
                     self.exposed_for = Some(Lux(self.lit.lighting(self.written()).reference_lux));
                 }
             }
-            Intent::StepState(by) => {
-                let drawing = self.exhibit.drawing_of(&self.exhibit.scenes[self.scene]);
-                self.view.step_state(drawing, by);
-            }
-            Intent::StepOverlay => {
-                let drawing = self.exhibit.drawing_of(&self.exhibit.scenes[self.scene]);
-                self.view.step_overlay(drawing);
-            }
-            Intent::Opacity(by) => self.view.fade(by),
             Intent::StepCompare(by) => {
                 let scene = self.shown().scene;
                 let written = self.written().compare.clone();
                 self.view.compare = comparing::stepped(&self.exhibit, &scene, written.as_ref(), by);
                 self.turns_for = 0.0;
             }
-            Intent::ShiftCompare(by) => {
-                if let Some(comparison) = &mut self.view.compare {
-                    comparing::shift(comparison, by);
-                }
-            }
-            Intent::TurnCompare(by) => {
-                if let Some(comparison) = &mut self.view.compare {
-                    comparing::turn(comparison, by);
-                }
-            }
-            Intent::Transmit(by) => {
-                // In hundredths, so that it comes back to none.
-                let share = ((self.view.transmitted + by) * 100.0).round() / 100.0;
-                self.view.transmitted = share.clamp(0.0, 1.0);
-            }
-            Intent::ReliefOnly => {
-                let enhance = &mut self.view.enhance;
-                enhance.relief_only = !enhance.relief_only;
-            }
-            Intent::Exaggerate => {
-                let enhance = &mut self.view.enhance;
-                enhance.exaggerate = match enhance.exaggerate {
-                    times if times >= STEEPEST => 1.0,
-                    times => 2.0 * times,
-                };
-            }
-            Intent::Stretch => {
-                let enhance = &mut self.view.enhance;
-                enhance.stretch = match enhance.stretch {
-                    None => Some(STRETCH),
-                    Some(_) => None,
-                };
-            }
-            Intent::Sharpen => {
-                let enhance = &mut self.view.enhance;
-                enhance.sharpen = if enhance.sharpen > 0.0 { 0.0 } else { SHARPEN };
+            Intent::StepState(_)
+            | Intent::StepOverlay
+            | Intent::Opacity(_)
+            | Intent::ShiftCompare(_)
+            | Intent::TurnCompare(_)
+            | Intent::Transmit(_)
+            | Intent::ReliefOnly
+            | Intent::Exaggerate
+            | Intent::Stretch
+            | Intent::Sharpen => {
+                let drawing = self.exhibit.drawing_of(&self.exhibit.scenes[self.scene]);
+                self.view.follow(drawing, intent);
             }
             Intent::StepScene(by) => {
                 let count = self.exhibit.scenes.len();
@@ -561,184 +514,6 @@ impl Hand {
         self.before_true_size = None;
         self.flip = None;
         self.both_sides = false;
-    }
-
-    /// The camera in a picture of this shape.
-    fn camera(&self) -> Camera {
-        let size = self.drawing().size_mm;
-        self.view.camera.fitted(size, self.picture.aspect)
-    }
-
-    /// The widest picture in mm: the whole sheet, or more if the scene says so.
-    fn widest(&self) -> f64 {
-        let fit = |camera: Camera| camera.fitted(self.drawing().size_mm, self.picture.aspect);
-        let whole = fit(Camera::whole_sheet(self.drawing().size_mm));
-        whole.width_mm.max(fit(self.written().camera).width_mm)
-    }
-
-    /// The nearest width in mm that the picture may have. A tiny sheet is not shown any larger
-    /// than whole.
-    fn within_reach(&self, width_mm: f64) -> f64 {
-        let widest = self.widest();
-        width_mm.clamp(NARROWEST_MM.min(widest), widest)
-    }
-
-    /// Right and up in the picture, as right and up on the table.
-    fn on_table(&self, seen: DVec2) -> DVec2 {
-        DVec2::from_angle(self.view.camera.turn.radians()).rotate(seen)
-    }
-
-    fn drag(&mut self, from: DVec2, to: DVec2) {
-        let grip = match self.grip {
-            Some(Grip::Undecided) | None => {
-                let aspect = self.picture.aspect;
-                let taken = |comparison: &Comparison| comparison.is_taken_at(from, aspect);
-                if self.view.compare.as_ref().is_some_and(taken) {
-                    Grip::Compare
-                } else if self.camera().width_mm < ZOOMED * self.widest()
-                    && self.turn == DVec2::ZERO
-                {
-                    Grip::Move
-                } else {
-                    Grip::Turn
-                }
-            }
-            Some(grip) => grip,
-        };
-        self.grip = Some(grip);
-        if grip == Grip::Compare {
-            if let Some(comparison) = &mut self.view.compare {
-                comparison.drag(from, to, self.picture.aspect);
-            }
-        } else if grip == Grip::Turn {
-            // The side that faces us follows the hand.
-            let by = self.on_table(DVec2::new(-(to.y - from.y), to.x - from.x) * TURN_DEG);
-            self.turn = (self.turn + by).clamp_length_max(FARTHEST_TURN_DEG);
-            self.speed.push(by);
-        } else {
-            self.shift(from, to);
-        }
-    }
-
-    /// Brings what lies at `from` to `to`.
-    fn shift(&mut self, from: DVec2, to: DVec2) {
-        if let (Some(start), Some(end)) = (self.table_point(from), self.table_point(to)) {
-            self.move_centre(start - end);
-            self.speed.push(start - end);
-        }
-    }
-
-    fn table_point(&self, at: DVec2) -> Option<DVec2> {
-        let eye = Eye::new(&self.camera(), self.drawing().size_mm);
-        let point = eye.table_point(at, self.picture.aspect)?;
-        Some(point.truncate())
-    }
-
-    /// Moves what the eye looks at, right and up on the table in mm, within the sheet.
-    fn move_centre(&mut self, by: DVec2) {
-        let mut camera = self.camera();
-        camera.centre_mm += DVec2::new(by.x, -by.y);
-        self.set_camera(camera);
-    }
-
-    fn set_camera(&mut self, mut camera: Camera) {
-        let size = self.drawing().size_mm;
-        let widest = self.widest();
-        camera.width_mm = self.within_reach(camera.width_mm);
-        // The picture stays within the widest one, which is centred.
-        let spare = (widest - camera.width_mm) / 2.0;
-        let spare = DVec2::new(spare, spare / self.picture.aspect);
-        let seen = self.on_table(DVec2::X).abs();
-        let reach = DVec2::new(
-            seen.x * spare.x + seen.y * spare.y,
-            seen.y * spare.x + seen.x * spare.y,
-        );
-        let middle = size / 2.0;
-        camera.centre_mm = camera.centre_mm.clamp(middle - reach, middle + reach);
-        let whole = Camera::whole_sheet(size);
-        // The whole sheet goes on filling a picture that changes its shape.
-        self.view.camera = if camera == whole.fitted(size, self.picture.aspect) {
-            whole
-        } else {
-            camera
-        };
-    }
-
-    fn set_width(&mut self, width_mm: f64, at: DVec2) {
-        let before = self.table_point(at);
-        let camera = Camera {
-            width_mm,
-            ..self.camera()
-        };
-        self.set_camera(camera);
-        if let (Some(before), Some(after)) = (before, self.table_point(at)) {
-            self.move_centre(before - after);
-        }
-    }
-
-    fn zoom_to(&mut self, width_mm: f64, at: DVec2) {
-        let target = self.within_reach(width_mm);
-        if self.calm {
-            self.set_width(target, at);
-        } else {
-            self.zoom = Some((target, at));
-        }
-    }
-
-    fn true_size(&mut self, at: DVec2) {
-        let width = self.zoom.map_or(self.camera().width_mm, |(width, _)| width);
-        let target = self.within_reach(self.picture.width_mm);
-        if (width / target - 1.0).abs() < 2.0 * ARRIVED {
-            let back = self.before_true_size.take().unwrap_or(self.widest());
-            self.zoom_to(back, at);
-        } else {
-            self.before_true_size = Some(width);
-            self.zoom_to(target, at);
-        }
-    }
-
-    fn turn_over(&mut self) {
-        if self.flip.is_some() {
-            return;
-        }
-        self.both_sides = true;
-        self.speed = Speed::default();
-        if self.calm {
-            self.finish_flip();
-        } else {
-            self.flip = Some(0.0);
-        }
-    }
-
-    fn finish_flip(&mut self) {
-        let drawing = self.drawing();
-        let (size, axis) = (drawing.size_mm, drawing.flip);
-        let mut camera = self.camera();
-        camera.centre_mm = other_side(camera.centre_mm, size, axis);
-        self.set_camera(camera);
-        self.view.side = self.view.side.other();
-        self.flip = None;
-    }
-
-    /// Whether the sheet is seen so flatly that its other side may come into sight.
-    fn is_steep(&self) -> bool {
-        let towards = Eye::new(&self.view.camera, self.drawing().size_mm).towards;
-        (self.turned() * DVec3::Z).dot(towards) < STEEP_DEG.to_radians().cos()
-    }
-
-    fn turned(&self) -> DQuat {
-        let turn = self.turn * (PI / 180.0);
-        DQuat::from_scaled_axis(turn.extend(0.0))
-    }
-
-    /// The sheet on its way to its other side: its right, or lower, edge comes up towards us and
-    /// goes over, and comes back the same way.
-    fn half_turned(&self, progress: f64) -> DQuat {
-        let part = match self.view.side {
-            SideName::Recto => progress,
-            SideName::Verso => 1.0 - progress,
-        };
-        DQuat::from_axis_angle(self.drawing().flip.axis(), -PI * part)
     }
 
     fn place_lamp(&mut self, change: impl FnOnce(LampPlace) -> LampPlace) {
