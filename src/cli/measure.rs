@@ -1,6 +1,6 @@
 //! `recto measure`
 
-use std::{fmt::Write as _, io::Write as _, path::PathBuf};
+use std::{io::Write as _, path::PathBuf};
 
 use clap::ArgGroup;
 use glam::DVec2;
@@ -20,14 +20,13 @@ use crate::{
     },
     maps::encode,
     readings::{
-        Desk, Disc, Reading, ReadingError, Tool, plot,
+        Desk, Disc, PROBE_MM, Reading, ReadingError, Tool, plot,
         sight::{Seen, Sight},
+        table,
     },
     stage::legend,
 };
 
-/// Radius of a probe where none is given, in mm: what a spectrophotometer sees.
-const PROBE_MM: f64 = 2.0;
 /// Width in pixels of the picture that a camera in true size is for, where none is named.
 const WIDTH_PX: u32 = 1920;
 
@@ -226,7 +225,7 @@ impl Asked {
             };
             let mut desk = Desk::new(&exhibit, scene.clone());
             for Wanted { option, tool } in self.0 {
-                let tool = tool.and_then(|tool| placed(tool, &option, sight.as_ref()));
+                let tool = tool.and_then(|tool| placed(tool, &option, sight.as_ref(), scene.side));
                 match tool.map(|(tool, screen_mm)| (with_state(tool, state), screen_mm)) {
                     Ok((tool, screen_mm)) => match desk.read(&tool, screen_mm) {
                         Ok(reading) => read.push(reading),
@@ -379,14 +378,21 @@ fn state(exhibit: &Exhibit, scene: &Scene, id: &str) -> Result<Option<usize>, Bo
 }
 
 /// The tool with its places in mm, and the size of a pixel there.
-fn placed(tool: Tool, option: &str, sight: Option<&Sight>) -> Result<(Tool, f64), Vec<Fault>> {
+fn placed(
+    tool: Tool,
+    option: &str,
+    sight: Option<&Sight>,
+    side: SideName,
+) -> Result<(Tool, f64), Vec<Fault>> {
     let Some(sight) = sight else {
         return Ok((tool, 0.0));
     };
     let mut screen_mm = 0.0f64;
     let mut faults = Vec::new();
-    let mut place = |pixel: DVec2| match sight.seen(pixel) {
-        Some(Seen { mm, pixel_mm }) => {
+    // What curls up far enough shows its back.
+    let seen = |pixel: DVec2| sight.seen(pixel).filter(|seen| seen.side == side);
+    let mut place = |pixel: DVec2| match seen(pixel) {
+        Some(Seen { mm, pixel_mm, .. }) => {
             screen_mm = screen_mm.max(pixel_mm);
             mm
         }
@@ -459,7 +465,7 @@ fn say(
     plot_file: Option<&std::path::Path>,
 ) -> Result<(), Failure> {
     if let Some(path) = csv {
-        let text = as_csv(readings);
+        let text = table::csv(readings);
         encode::write_whole(path, |file| file.write_all(text.as_bytes()))?;
     }
     let profile = readings.iter().find(|reading| !reading.samples.is_empty());
@@ -501,45 +507,4 @@ fn say(
 
 fn as_json(value: &impl Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(value).map_err(|error| Failure::Input(Box::new(error)))
-}
-
-/// A row for each value, and for each place of a profile with its distance from the start in
-/// `s_mm`. The marks of RFC 4180: what holds commas stands in quotation marks.
-fn as_csv(readings: &[Reading]) -> String {
-    let mut text =
-        "reading,tool,places_mm,quantity,s_mm,value,sigma,unit,spread,count,remark\r\n".to_owned();
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-    for (i, reading) in readings.iter().enumerate() {
-        let places: Vec<String> = reading
-            .places_mm
-            .iter()
-            .map(|[x, y]| format!("{x},{y}"))
-            .collect();
-        let start = format!("{},{},{}", i + 1, reading.tool, quoted(&places.join(":")));
-        for value in &reading.values {
-            // Writing into a text does not fail.
-            let _ = write!(
-                text,
-                "{start},{},,{},{},{},{},{},{}\r\n",
-                quoted(value.quantity),
-                number(value.value),
-                number(value.sigma),
-                value.unit,
-                number(value.spread),
-                value
-                    .count
-                    .map_or_else(String::new, |count| count.to_string()),
-                quoted(value.none.as_deref().unwrap_or_default()),
-            );
-        }
-        for sample in &reading.samples {
-            let _ = write!(
-                text,
-                "{start},\"height\",{},{},{},µm,,,\"\"\r\n",
-                sample.s_mm, sample.z_um, sample.sigma_um
-            );
-        }
-    }
-    text
 }

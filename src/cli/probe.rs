@@ -14,7 +14,7 @@ use crate::{
         quoted_list,
         readout::{CurvePoint, ReadFault, Reading},
     },
-    maps::encode,
+    maps::{Rasters, encode},
 };
 
 #[derive(clap::Args)]
@@ -61,6 +61,8 @@ struct OverlayReport {
     title: String,
     #[serde(flatten)]
     says: Says,
+    #[serde(skip)]
+    words: String,
 }
 
 #[derive(Serialize)]
@@ -145,6 +147,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             side.word()
         )));
     }
+    let mut rasters = Rasters::default();
     let fault = |fault: ReadFault| Faults::from(exhibit.map_fault(&fault.path, &fault.error));
     let say = |wording: &Wording| {
         let first = exhibit.languages.first().map_or("en", String::as_str);
@@ -154,11 +157,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let overlays = match stack {
         Some(_) => Vec::new(),
-        None => drawing.readings(side, at).map_err(fault)?,
+        None => drawing.readings(&mut rasters, side, at).map_err(fault)?,
     };
     let report = |(overlay, reading): (&Overlay, Option<Reading<'_>>)| OverlayReport {
         id: overlay.id.clone(),
         title: say(&overlay.title),
+        words: reading
+            .as_ref()
+            .map_or_else(|| "nothing".to_owned(), |reading| reading.words(&say)),
         says: Says::of(reading, &say),
     };
     let probe = Probe {
@@ -172,7 +178,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 Ok(StackReport {
                     id: stack.id.clone(),
                     title: say(&stack.title),
-                    curve: stack.curve(at).map_err(fault)?,
+                    curve: stack.curve(&mut rasters, at).map_err(fault)?,
                 })
             })
             .collect::<Result<_, Faults>>()?,
@@ -216,23 +222,6 @@ impl Says {
             Some(Reading::Difference(value)) => Self::Difference { value },
         }
     }
-
-    fn words(&self) -> String {
-        match self {
-            Self::Nothing => "nothing".to_owned(),
-            Self::Category { label, .. } => label.clone(),
-            Self::Quantity { value, unit } => format!("{value:.4} {unit}"),
-            Self::Colour {
-                lab: Some([l, a, b]),
-                ..
-            } => format!("L* {l:.1}, a* {a:.1}, b* {b:.1}"),
-            Self::Colour {
-                linear_srgb: [r, g, b],
-                lab: None,
-            } => format!("false colour, linear red {r:.3}, green {g:.3}, blue {b:.3}"),
-            Self::Difference { value } => format!("{value:+.4} of reflectance"),
-        }
-    }
 }
 
 impl Probe {
@@ -255,7 +244,7 @@ impl Probe {
         };
         for overlay in &self.overlays {
             let name = titled(&overlay.id, &overlay.title);
-            line(format!("  {name}: {}", overlay.says.words()));
+            line(format!("  {name}: {}", overlay.words));
         }
         for stack in &self.stacks {
             line(format!("  {}:", titled(&stack.id, &stack.title)));

@@ -56,7 +56,7 @@ pub use matter::{
 };
 pub use missing::Missing;
 pub use pyramid::{Level, Pyramid, Texels};
-pub use readout::{category_at, colour_at, value_at};
+pub use readout::{Rasters, category_at, colour_at, value_at};
 pub use slope::load_normal_from_height;
 pub use warp::{Placed, Warp};
 

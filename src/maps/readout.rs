@@ -1,5 +1,11 @@
 //! What a map's file says at one place.
 
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
 use glam::DVec2;
 
 use super::{
@@ -9,6 +15,21 @@ use super::{
     linear::Linear,
     load::decode,
 };
+
+/// Files that were decoded to be read at places, each once.
+#[derive(Default)]
+pub struct Rasters(HashMap<PathBuf, Arc<Raster>>);
+
+impl Rasters {
+    fn decoded(&mut self, path: &Path) -> Result<Arc<Raster>, MapError> {
+        if let Some(held) = self.0.get(path) {
+            return Ok(held.clone());
+        }
+        let raster = Arc::new(decode(path)?);
+        self.0.insert(path.to_owned(), raster.clone());
+        Ok(raster)
+    }
+}
 
 /// A place in a file's pixels, `None` beyond its edges.
 fn place(file: Placed<'_>, raster: &Raster, uv: DVec2) -> Option<DVec2> {
@@ -50,12 +71,13 @@ fn between<const C: usize>(
 /// # Errors
 /// As [`super::verify`].
 pub fn colour_at<'f>(
+    rasters: &mut Rasters,
     file: impl Into<Placed<'f>>,
     encoding: ColourEncoding,
     uv: DVec2,
 ) -> Result<Option<[f64; 3]>, MapError> {
     let file = file.into();
-    let raster = decode(file.path)?;
+    let raster = rasters.decoded(file.path)?;
     let linear = Linear::new(file.path, &raster, encoding)?;
     let Some(px) = place(file, &raster, uv) else {
         return Ok(None);
@@ -75,9 +97,13 @@ pub fn colour_at<'f>(
 ///
 /// # Errors
 /// As [`super::verify`].
-pub fn value_at<'f>(file: impl Into<Placed<'f>>, uv: DVec2) -> Result<Option<f64>, MapError> {
+pub fn value_at<'f>(
+    rasters: &mut Rasters,
+    file: impl Into<Placed<'f>>,
+    uv: DVec2,
+) -> Result<Option<f64>, MapError> {
     let file = file.into();
-    let raster = decode(file.path)?;
+    let raster = rasters.decoded(file.path)?;
     let Some(px) = place(file, &raster, uv) else {
         return Ok(None);
     };
@@ -96,12 +122,13 @@ pub fn value_at<'f>(file: impl Into<Placed<'f>>, uv: DVec2) -> Result<Option<f64
 /// # Errors
 /// As [`super::verify`].
 pub fn category_at<'f>(
+    rasters: &mut Rasters,
     file: impl Into<Placed<'f>>,
     legend: &[[u8; 3]],
     uv: DVec2,
 ) -> Result<Option<usize>, MapError> {
     let file = file.into();
-    let raster = decode(file.path)?;
+    let raster = rasters.decoded(file.path)?;
     let Some(px) = place(file, &raster, uv) else {
         return Ok(None);
     };

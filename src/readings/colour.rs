@@ -62,7 +62,7 @@ impl Desk<'_> {
     }
 
     /// The mean colour of a disc in a state.
-    fn probed(
+    pub(super) fn probed(
         &mut self,
         disc: Disc,
         state: Option<usize>,

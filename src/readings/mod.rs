@@ -7,6 +7,8 @@
 //! | places → pictures that lie there, sampled | `pictures` |
 //! | tool → [`Reading`] | [`Desk::read`] |
 //! | a profile → a plot | [`plot`] |
+//! | readings → a table | [`table`] |
+//! | a place → what overlays and stacks say there | [`Desk::under`] |
 //!
 //! Places are in mm in the side frame of the side that is seen: from the top left corner, x right,
 //! y down. Uncertainties are standard ones (1 σ), see [`crate::measure`]. What is measured is what
@@ -19,6 +21,8 @@ pub mod plot;
 mod relief;
 pub mod sight;
 mod stroke;
+pub mod table;
+mod under;
 mod words;
 
 use std::path::PathBuf;
@@ -31,12 +35,16 @@ use crate::{
         Drawing, Exhibit, Scene, Side,
         exhibit::{MapFile, SideName, Source},
     },
-    maps::MapError,
+    maps::{MapError, Rasters},
     measure::{self, Accuracy, MeasureError, Measured, profile::Relief},
 };
 use pictures::Pictures;
 pub use pictures::registration_mm;
+pub use under::{Curve, Under};
 use words::{at, plus_minus};
+
+/// Radius of a probe where none is given, in mm: what a spectrophotometer sees.
+pub const PROBE_MM: f64 = 2.0;
 
 /// What is laid on the side.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,6 +142,22 @@ impl Value {
         }
     }
 
+    /// As people read it, with its uncertainty: `12.34 ± 0.05 mm`.
+    pub fn words(&self) -> String {
+        let space = if matches!(self.unit, "" | "°") {
+            ""
+        } else {
+            " "
+        };
+        match (self.value, self.sigma) {
+            (Some(value), Some(sigma)) => {
+                plus_minus(Measured { value, sigma }, &format!("{space}{}", self.unit))
+            }
+            (Some(value), None) => format!("{value}{space}{}", self.unit),
+            (None, _) => "none".to_owned(),
+        }
+    }
+
     fn none(quantity: &'static str, unit: &'static str, why: String) -> Self {
         Self {
             quantity,
@@ -151,6 +175,10 @@ impl Value {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reading {
     pub tool: &'static str,
+    /// On which side of which drawing in which state, by their ids.
+    pub drawing: String,
+    pub side: SideName,
+    pub state: Option<String>,
     /// Where it lay, in mm on the side.
     pub places_mm: Vec<[f64; 2]>,
     pub values: Vec<Value>,
@@ -215,16 +243,38 @@ pub struct Desk<'e> {
     exhibit: &'e Exhibit,
     scene: Scene,
     pictures: Pictures,
+    rasters: Rasters,
+}
+
+/// Decoded maps that outlive a desk.
+#[derive(Default)]
+pub struct Shelf {
+    pictures: Pictures,
+    rasters: Rasters,
 }
 
 impl<'e> Desk<'e> {
     /// The side that `scene` of `exhibit` shows, in its state. Of a comparison, this is the side it
     /// begins with.
     pub fn new(exhibit: &'e Exhibit, scene: Scene) -> Self {
+        Self::with(exhibit, scene, Shelf::default())
+    }
+
+    /// The same, with what an earlier desk of the same files has decoded.
+    pub fn with(exhibit: &'e Exhibit, scene: Scene, shelf: Shelf) -> Self {
         Self {
             exhibit,
             scene,
-            pictures: Pictures::default(),
+            pictures: shelf.pictures,
+            rasters: shelf.rasters,
+        }
+    }
+
+    /// Clears the desk, and keeps what it has decoded.
+    pub fn clear(self) -> Shelf {
+        Shelf {
+            pictures: self.pictures,
+            rasters: self.rasters,
         }
     }
 
@@ -246,6 +296,13 @@ impl<'e> Desk<'e> {
             return Err(faults);
         }
         let mut reading = self.laid(tool, screen_mm).map_err(|error| vec![error])?;
+        let drawing = self.drawing();
+        reading.drawing.clone_from(&drawing.id);
+        reading.side = self.scene.side;
+        reading.state = self
+            .scene
+            .state
+            .map(|state| drawing.states[state].id.clone());
         reading.places_mm = tool.places().iter().map(DVec2::to_array).collect();
         Ok(reading)
     }
@@ -391,6 +448,9 @@ impl<'e> Desk<'e> {
 fn reading(tool: &Tool, values: Vec<Value>, words: String, notes: Vec<String>) -> Reading {
     Reading {
         tool: tool.name(),
+        drawing: String::new(),
+        side: SideName::Recto,
+        state: None,
         places_mm: Vec::new(),
         values,
         words,

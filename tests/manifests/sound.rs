@@ -8,7 +8,7 @@ use recto::{
         BandMix, CompareMode, Exhibit, FlipAxis, LampColour, LampKind, MediaContent, Member,
         OverlayKind, SideName, Source, Surface, check_shape, create, readout::Reading,
     },
-    maps::registration::FitKind,
+    maps::{Rasters, registration::FitKind},
     optics::medium::{Matter, MediumId, Preset},
     units::{Candela, Degrees, Kelvin, Lux, Nits},
 };
@@ -515,7 +515,11 @@ fn a_place_has_a_value_in_every_layer() {
     let drawing = &exhibit.drawings[0];
     let at = |x: f64| {
         drawing
-            .readings(SideName::Recto, DVec2::new(x, 50.0))
+            .readings(
+                &mut Rasters::default(),
+                SideName::Recto,
+                DVec2::new(x, 50.0),
+            )
             .unwrap()
     };
     let readings = at(150.0);
@@ -539,7 +543,9 @@ fn a_place_has_a_value_in_every_layer() {
         panic!("{readings:?}")
     };
     assert!((difference - light).abs() < 1e-4, "{difference} {light}");
-    let curve = drawing.stacks[0].curve(DVec2::new(150.0, 50.0)).unwrap();
+    let curve = drawing.stacks[0]
+        .curve(&mut Rasters::default(), DVec2::new(150.0, 50.0))
+        .unwrap();
     assert_eq!(
         curve.iter().map(|p| p.wavelength_nm).collect::<Vec<_>>(),
         [550.0, 850.0]

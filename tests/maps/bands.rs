@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DAffine2, DVec2, dvec2};
 use recto::maps::{
-    BandPicture, ColourEncoding, ColourMapName, DIVERGING, category_at, colour_at, encode,
+    BandPicture, ColourEncoding, ColourMapName, DIVERGING, Rasters, category_at, colour_at, encode,
     load_bands_as_colour, load_bands_as_difference, value_at,
 };
 
@@ -94,12 +94,18 @@ fn a_band_that_lies_elsewhere_is_brought_to_the_first_one_s_texels() {
 fn a_place_is_read_between_the_middles_of_pixels() {
     let folder = folder();
     let path = grey(&folder.path().join("a.png"), [2, 2], &[0, 100, 200, 250]);
-    let at = |u: f64, v: f64| value_at(&path, dvec2(u, v)).expect("read");
+    let at = |u: f64, v: f64| value_at(&mut Rasters::default(), &path, dvec2(u, v)).expect("read");
     assert_eq!(at(0.25, 0.25), Some(0.0));
     let middle = at(0.5, 0.5).expect("a value");
     assert!((middle - 550.0 / 4.0 / 255.0).abs() < 1e-6, "{middle}");
     assert_eq!(at(1.2, 0.5), None);
-    let linear = colour_at(&path, ColourEncoding::Linear, dvec2(0.75, 0.25)).expect("read");
+    let linear = colour_at(
+        &mut Rasters::default(),
+        &path,
+        ColourEncoding::Linear,
+        dvec2(0.75, 0.25),
+    )
+    .expect("read");
     let [r, g, b] = linear.expect("a colour");
     assert!((r - 100.0 / 255.0).abs() < HALF_CODE && r == g && g == b);
 
@@ -107,7 +113,9 @@ fn a_place_is_read_between_the_middles_of_pixels() {
     let pixels = [[1, 2, 3, 255], [4, 5, 6, 255], [1, 2, 3, 0], [9, 9, 9, 255]];
     encode::save_png_rgba8(&path, 2, 2, &pixels, None).expect("written");
     let legend = [[1, 2, 3], [4, 5, 6]];
-    let at = |u: f64, v: f64| category_at(&path, &legend, dvec2(u, v)).expect("read");
+    let at = |u: f64, v: f64| {
+        category_at(&mut Rasters::default(), &path, &legend, dvec2(u, v)).expect("read")
+    };
     assert_eq!(at(0.2, 0.2), Some(0));
     assert_eq!(at(0.6, 0.4), Some(1));
     assert_eq!(at(0.2, 0.8), None, "transparent");
