@@ -110,6 +110,8 @@ const MAY_IMPORT: [(&str, &[&str]); 22] = [
             "device",
             "optics::tier",
             "units",
+            // Tools in the hand are those of the command line.
+            "readings",
         ],
     ),
     ("cli", &["*"]),

@@ -1,33 +1,26 @@
-//! Hotspots under the hand: which are in view, where their outlines lie in the picture, which one
-//! is open, and how they are drawn.
+//! Hotspots under the hand: which are in view, where their outlines lie in the picture, and which one
+//! is open.
 
 use std::sync::Arc;
 
-use bevy::{prelude::*, ui::UiTransform};
-use glam::{DVec2, DVec3, DVec4};
+use bevy::prelude::*;
+use glam::{DVec2, DVec3};
 
-use super::{caption::Texts, hand::Hand, intent::Intent, view::wrapped};
+use super::{
+    hand::Hand,
+    intent::Intent,
+    marks::{self, Ink, Marks, Shape},
+    view::wrapped,
+};
 use crate::{
     manifest::{
         comparison::Part,
-        exhibit::{Drawing, Hotspot, SideName},
-        eye::Eye,
+        exhibit::{Drawing, Hotspot},
         hotspot::contains,
         surface::SideSurface,
     },
-    stage::{
-        Arranged, Library, Shared, Shown,
-        legend::TextCamera,
-        library::{Held, Request},
-    },
+    stage::Shown,
 };
-
-/// Along a curled sheet an outline bends in steps of this length.
-const STEP_MM: f64 = 3.0;
-/// Width of an outline with its dark rims, and of the open one's, in logical pixels.
-const WIDTH_PX: f32 = 3.0;
-const OPEN_WIDTH_PX: f32 = 5.0;
-const RIM_PX: f32 = 1.0;
 
 /// Which hotspots somebody asked to see, and which one they opened.
 #[derive(Clone, Debug, Default)]
@@ -68,22 +61,12 @@ impl Hotspots {
         if known {
             return;
         }
-        let half = drawing.size_mm / 2.0;
-        let on_surface = |place: DVec3| {
-            let on_recto = DVec2::new(place.x + half.x, half.y - place.y);
-            surface_point(surface, on_recto).unwrap_or(place)
+        let outline = |hotspot: &Hotspot| {
+            let places = &hotspot.polygon_mm;
+            marks::on_sheet(drawing, Some(surface), hotspot.side, places, true)
         };
-        let outlines = drawing.hotspots.iter().map(|hotspot| {
-            let corners = drawing.outline(hotspot);
-            let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-            let steps = edges.flat_map(|(a, b)| {
-                let count = (a.distance(*b) / STEP_MM).ceil().max(1.0) as usize;
-                (0..count).map(move |k| a.lerp(*b, k as f64 / count as f64))
-            });
-            steps.map(on_surface).collect()
-        });
         self.curled = Some(Curled {
-            outlines: outlines.collect(),
+            outlines: drawing.hotspots.iter().map(outline).collect(),
             surface: surface.clone(),
             hotspots: drawing.hotspots.clone(),
         });
@@ -99,67 +82,26 @@ impl Hotspots {
 
     /// Every hotspot of the drawing that is shown, on the sides that are in view.
     pub fn seen(&self, shown: &Shown) -> Vec<Seen> {
+        let drawing = shown.exhibit.drawing_of(&shown.scene);
         let mut seen = Vec::new();
-        let comparison = shown.scene.compare.as_ref();
-        // Of members that are shown in one, each place is the same in all.
-        let in_one = comparison.is_some_and(|comparison| comparison.mode.combines());
-        let count = if in_one { 1 } else { usize::MAX };
-        for member in shown.members().into_iter().take(count) {
-            if member.scene.drawing != shown.scene.drawing {
-                continue;
-            }
-            let drawing = shown.exhibit.drawing_of(&member.scene);
-            let aspect = member.part.aspect(shown.aspect);
-            let camera = member.scene.camera.fitted(drawing.size_mm, aspect);
-            let eye = Eye::new(&camera, drawing.size_mm);
-            let clip = member.part.clip_from_own() * eye.clip_from_table(aspect);
-            let in_picture = |place: &DVec3| {
-                let at: DVec4 = clip * (member.pose * *place).extend(1.0);
-                (at.w > 0.0).then(|| DVec2::new(at.x, at.y) / at.w)
-            };
-            let side = facing(&member, &eye);
+        for view in marks::in_view(shown) {
             for (index, hotspot) in drawing.hotspots.iter().enumerate() {
-                if hotspot.side != side {
+                if hotspot.side != view.side {
                     continue;
                 }
                 let outline = self.outline(drawing, index);
                 // What reaches behind the eye has no outline in the picture.
-                let outline: Option<Vec<DVec2>> = outline.iter().map(in_picture).collect();
+                let outline: Option<Vec<DVec2>> =
+                    outline.iter().map(|point| view.ndc(*point)).collect();
                 seen.extend(outline.map(|outline| Seen {
                     hotspot: index,
                     outline,
-                    part: member.part,
+                    part: view.lying.part,
                 }));
             }
         }
         seen
     }
-}
-
-/// Which side of a member's sheet the eye sees.
-fn facing(member: &Shared, eye: &Eye) -> SideName {
-    // Towards the eye, and for one at a finite distance its place, seen from the sheet's middle.
-    let towards = member.pose.inverse() * eye.place().truncate();
-    match towards.z >= 0.0 {
-        true => SideName::Recto,
-        false => SideName::Verso,
-    }
-}
-
-/// The point of a sheet's surface over a place of its recto.
-fn surface_point(surface: &SideSurface, place: DVec2) -> Option<DVec3> {
-    surface.indices.chunks_exact(3).find_map(|triangle| {
-        let [a, b, c] = [0, 1, 2].map(|k| triangle[k] as usize);
-        let [origin, u, v] = [surface.side[a], surface.side[b], surface.side[c]];
-        let (u, v, to) = (u - origin, v - origin, place - origin);
-        let area = u.perp_dot(v);
-        let (s, t) = (to.perp_dot(v) / area, u.perp_dot(to) / area);
-        const NEAR: f64 = 1e-9;
-        (s >= -NEAR && t >= -NEAR && s + t <= 1.0 + NEAR).then(|| {
-            let at = surface.positions[a];
-            at + (surface.positions[b] - at) * s + (surface.positions[c] - at) * t
-        })
-    })
 }
 
 impl Hand {
@@ -259,121 +201,34 @@ impl Hand {
     }
 }
 
-/// One straight piece of an outline on screen.
-#[derive(Component)]
-pub struct Line;
-
-/// A piece of an outline: from where to where in logical pixels, and whether it is the open one's.
-type Piece = (Vec2, Vec2, bool);
-
-/// Draws the outlines that moved.
-pub fn draw(
-    mut commands: Commands,
-    (shown, mut hand, mut texts): (Res<Shown>, ResMut<Hand>, ResMut<Texts>),
-    (arranged, mut library): (Res<Arranged>, ResMut<Library>),
-    (windows, cameras): (Query<&Window>, Query<Entity, With<TextCamera>>),
-    lines: Query<Entity, With<Line>>,
-    mut drawn: Local<Vec<Piece>>,
+/// Lays the outlines over the picture.
+pub fn lay(
+    (shown, shape, mut hand): (Res<Shown>, Res<Shape>, ResMut<Hand>),
+    windows: Query<&Window>,
+    mut marks: ResMut<Marks>,
 ) {
-    let (Ok(camera), Ok(window)) = (cameras.single(), windows.single()) else {
+    let Ok(window) = windows.single() else {
         return;
     };
-    let mut pieces = Vec::new();
+    let mut outlines = Vec::new();
     if hand.shows_hotspots() {
         let drawing = shown.exhibit.drawing_of(&shown.scene);
-        if arranged.is_settled() {
-            // On the stage it is loaded, and looking at it is no change.
-            let shape = Request::Surface(drawing.surface.clone(), drawing.size_mm);
-            let held = library.bypass_change_detection().take(&[shape], None);
-            if let Some([Held::Surface(surface)]) = held.as_deref() {
-                hand.bypass_change_detection()
-                    .hotspots
-                    .learn(drawing, surface);
-            }
+        if let Some(surface) = shape.of(drawing) {
+            // No change of what is shown.
+            let hand = hand.bypass_change_detection();
+            hand.hotspots.learn(drawing, surface);
         }
         let open = hand.open_index();
         for seen in hand.hotspots.seen(&shown) {
-            pieces.extend(self::pieces(&seen, shown.aspect, window.size(), open));
+            let ink = match open == Some(seen.hotspot) {
+                true => Ink::Open,
+                false => Ink::Quiet,
+            };
+            let picture = (shown.aspect, window.size());
+            outlines.extend(marks::lines(&seen.outline, true, &seen.part, picture, ink));
         }
     }
-    if *drawn == pieces {
-        return;
+    if marks.hotspots != outlines {
+        marks.hotspots = outlines;
     }
-    texts.set_changed();
-    for line in &lines {
-        commands.entity(line).despawn();
-    }
-    for (from, to, open) in &pieces {
-        commands.spawn((Line, UiTargetCamera(camera), stroke(*from, *to, *open)));
-    }
-    *drawn = pieces;
-}
-
-/// The straight pieces of an outline, in pixels from the top left.
-fn pieces(seen: &Seen, aspect: f64, size: Vec2, open: Option<usize>) -> Vec<Piece> {
-    let outline = &seen.outline;
-    let px = |at: &DVec2| {
-        let share = DVec2::new(at.x + 1.0, 1.0 - at.y) / 2.0;
-        share.as_vec2() * size
-    };
-    let mut pieces: Vec<Piece> = Vec::new();
-    let mut through: Vec<Vec2> = Vec::new();
-    for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
-        if !(seen.part.shows(*a, aspect) && seen.part.shows(*b, aspect)) {
-            through.clear();
-            continue;
-        }
-        let (from, to) = (px(a), px(b));
-        // What goes straight on is one piece.
-        if let Some((start, end, _)) = pieces.last_mut()
-            && *end == from
-            && through
-                .iter()
-                .chain([&from])
-                .all(|p| is_near(*p, *start, to))
-        {
-            *end = to;
-            through.push(from);
-            continue;
-        }
-        through.clear();
-        pieces.push((from, to, open == Some(seen.hotspot)));
-    }
-    pieces
-}
-
-/// Whether a place lies on a line as far as can be seen.
-fn is_near(place: Vec2, from: Vec2, to: Vec2) -> bool {
-    const NEAR_PX: f32 = 0.4;
-    let along = to - from;
-    let t = (place - from).dot(along) / along.length_squared().max(1e-6);
-    place.distance(from + along * t.clamp(0.0, 1.0)) <= NEAR_PX
-}
-
-/// A light line with dark rims, which is seen on paper and on ink.
-fn stroke(from: Vec2, to: Vec2, open: bool) -> impl Bundle {
-    let width = if open { OPEN_WIDTH_PX } else { WIDTH_PX };
-    let colour = match open {
-        true => Color::srgb(1.0, 0.72, 0.1),
-        false => Color::srgb(0.97, 0.96, 0.92),
-    };
-    let (along, middle) = (to - from, (from + to) / 2.0);
-    // As long as it is wide beyond its ends, so that corners are closed.
-    let length = along.length() + width;
-    (
-        Node {
-            position_type: PositionType::Absolute,
-            left: Val::Px(middle.x - length / 2.0),
-            top: Val::Px(middle.y - width / 2.0),
-            width: Val::Px(length),
-            height: Val::Px(width),
-            border: UiRect::vertical(Val::Px(RIM_PX)),
-            ..default()
-        },
-        BackgroundColor(colour),
-        BorderColor::all(Color::srgba(0.05, 0.05, 0.05, 0.8)),
-        UiTransform::from_rotation(Rot2::radians(along.to_angle())),
-        // Below the texts.
-        GlobalZIndex(-1),
-    )
 }

@@ -6,8 +6,9 @@
 //! | [`Intent`] and time → [`Hand`] | [`hand`], `view`, `lamp`, `motion` |
 //! | [`Hand`] → [`crate::stage::Shown`] | [`Hand::shown`] |
 //! | comparisons in the hand | `comparing` |
-//! | hotspots under the hand and on screen | `hotspots` |
+//! | hotspots under the hand | `hotspots` |
 //! | the view as a scene or a link | `saving` |
+//! | lines and words that lie on the sheet | `marks` |
 //! | texts | `caption` |
 //! | which tier serves what is shown | `foresight` |
 //! | the window, and its rest | `window` |
@@ -21,6 +22,7 @@ mod hotspots;
 mod input;
 mod intent;
 mod lamp;
+mod marks;
 mod motion;
 mod saving;
 mod view;

@@ -34,6 +34,7 @@ use super::{
     hotspots,
     input::Devices,
     intent::Intent,
+    marks::{self, Marks, Shape},
     saving::{self, Saved},
 };
 use crate::{
@@ -109,6 +110,8 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         .init_resource::<Saved>()
         .init_resource::<Pace>()
         .init_resource::<Foresight>()
+        .init_resource::<Shape>()
+        .init_resource::<Marks>()
         .insert_resource(PictureSize(UVec2::ONE))
         .add_message::<Intent>()
         .add_plugins((
@@ -133,7 +136,15 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
                 )
                     .chain()
                     .in_set(StageSet::Steer),
-                (fall_back, foresee, hotspots::draw, caption::draw, rest)
+                (
+                    fall_back,
+                    foresee,
+                    marks::learn,
+                    hotspots::lay,
+                    marks::draw,
+                    caption::draw,
+                    rest,
+                )
                     .chain()
                     .after(StageSet::Arrange),
             ),
