@@ -112,6 +112,9 @@ const MAY_IMPORT: [(&str, &[&str]); 22] = [
             "units",
             // Tools in the hand are those of the command line.
             "readings",
+            // What is exported from the window: how small a figure may be, and its table's file.
+            "figure::bar::LEAST_PX",
+            "maps::encode",
         ],
     ),
     ("cli", &["*"]),

@@ -33,6 +33,9 @@ pub struct Arguments {
     /// Fill the display
     #[arg(long)]
     fullscreen: bool,
+    /// Where E exports figures to; without it, the folder that recto was started in
+    #[arg(long, value_name = "DIR")]
+    export: Option<PathBuf>,
     /// For a public wall (not in this version yet)
     #[arg(long)]
     kiosk: bool,
@@ -55,6 +58,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         display_mm: arguments.display_mm,
         size: arguments.size,
         fullscreen: arguments.fullscreen,
+        export: arguments.export,
     };
     let path = arguments.exhibit.or_else(sample_exhibit).ok_or_else(|| {
         Failure::Usage(

@@ -20,7 +20,7 @@ const TITLE: f32 = 1.25;
 const QUIET: f32 = 0.85;
 
 /// What the keys do, for the list of them and for the manual.
-pub const KEYS: [(&str, &str); 24] = [
+pub const KEYS: [(&str, &str); 29] = [
     ("drag", "turn the sheet; move it when zoomed in"),
     ("wheel, + −", "zoom"),
     ("double click", "true size and back"),
@@ -31,6 +31,7 @@ pub const KEYS: [(&str, &str); 24] = [
     ("S, Shift + S", "next state, back"),
     ("O", "overlays: none, each, all"),
     ("[  ]", "fainter, stronger overlays"),
+    ("G, Shift + G", "next category alone, back"),
     ("X, Shift + X", "next comparison, back"),
     (",  .", "move the curtain, more or less of a blend"),
     ("<  >", "turn the curtain, larger loupe, ΔE00 or light"),
@@ -46,8 +47,12 @@ pub const KEYS: [(&str, &str); 24] = [
         "Tab, Shift + Tab, Enter",
         "next hotspot, back, to its scene",
     ),
+    ("M, Shift + M", "next measuring tool, back: click to lay it"),
+    ("Backspace", "take back a place, or the last measurement"),
+    ("V", "what lies under the pointer"),
     ("W, Ctrl + S", "save the view as a scene"),
     ("K", "print a link to the view"),
+    ("E, Shift + E", "export a figure, or its light as EXR"),
     ("T, Shift + T", "next tier of accuracy, back"),
     ("C", "caption"),
     ("F11, Esc", "full screen, close or quit"),
@@ -159,9 +164,10 @@ pub fn draw(
 }
 
 /// Light text on this keeps a contrast above 4.5:1 over the whitest paper.
-const DARK: Color = Color::srgba(0.05, 0.05, 0.05, 0.93);
+pub(super) const DARK: Color = Color::srgba(0.05, 0.05, 0.05, 0.93);
 
-fn panel_node(size: f32) -> Node {
+/// A panel at a corner of the picture.
+pub(super) fn panel_node(size: f32) -> Node {
     Node {
         position_type: PositionType::Absolute,
         padding: UiRect::all(Val::Px(size * 0.7)),

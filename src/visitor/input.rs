@@ -48,6 +48,8 @@ pub struct Devices {
     /// The window's size in logical pixels.
     size: Vec2,
     cursor: Vec2,
+    /// Where something points, the mouse or the last finger.
+    pointer: Option<Vec2>,
     held: Option<(MouseButton, Held)>,
     shift: bool,
     control: bool,
@@ -72,6 +74,7 @@ impl Devices {
             WindowEvent::KeyboardInput(key) => self.key(key, want),
             WindowEvent::CursorMoved(moved) => {
                 self.wander(moved.position);
+                self.pointer = Some(moved.position);
                 let before = std::mem::replace(&mut self.cursor, moved.position);
                 match self.held {
                     Some((_, Held::Sheet)) => want(Intent::Drag {
@@ -90,6 +93,7 @@ impl Devices {
                 at: self.place(self.cursor),
                 factor: NOTCH.powf(notches(wheel)),
             }),
+            WindowEvent::CursorLeft(_) => self.pointer = None,
             WindowEvent::TouchInput(touch) => self.touch(touch, now, want),
             WindowEvent::KeyboardFocusLost(_) => {
                 (self.shift, self.control, self.lamp_key) = (false, false, false);
@@ -101,6 +105,11 @@ impl Devices {
             }
             _ => {}
         }
+    }
+
+    /// Where something points, in logical pixels from the top left corner.
+    pub fn pointer(&self) -> Option<Vec2> {
+        self.pointer
     }
 
     /// From logical pixels to −1…1, y up.
@@ -163,6 +172,8 @@ impl Devices {
 
     fn touch(&mut self, touch: &TouchInput, now: Duration, mut want: impl FnMut(Intent)) {
         let known = self.fingers.iter().position(|(id, _)| *id == touch.id);
+        // Where a finger was lifted it goes on pointing.
+        self.pointer = Some(touch.position);
         match (touch.phase, known) {
             (TouchPhase::Started, None) => {
                 self.fingers.push((touch.id, touch.position));
@@ -274,6 +285,7 @@ impl Devices {
             Key::Escape => Intent::Quit,
             Key::Tab => Intent::StepHotspot(if self.shift { -1 } else { 1 }),
             Key::Enter => Intent::GoOn,
+            Key::Backspace | Key::Delete => Intent::TakeBack,
             Key::F1 => Intent::Keys,
             Key::F11 => Intent::Fullscreen,
             Key::Character(text) => match text.to_lowercase().as_str() {
@@ -285,6 +297,10 @@ impl Devices {
                 "2" => Intent::RaiseLamp(OBLIQUE_DEG),
                 "3" => Intent::RaiseLamp(RAKING_DEG),
                 "i" => Intent::Hotspots,
+                "m" => Intent::StepTool(if self.shift { -1 } else { 1 }),
+                "v" => Intent::ReadOut,
+                "g" => Intent::StepCategory(if self.shift { -1 } else { 1 }),
+                "e" => Intent::Export { linear: self.shift },
                 "w" => Intent::SaveView,
                 "s" if self.control => Intent::SaveView,
                 "k" => Intent::Link,

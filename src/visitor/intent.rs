@@ -68,15 +68,29 @@ pub enum Intent {
     StepScene(i32),
     /// To another tier of accuracy, forwards (1) or back (−1).
     StepTier(i32),
-    /// A click or tap at this place that was no drag: opens a hotspot that is shown there, goes where
+    /// A click or tap at this place that was no drag: lays the tool in the hand there; without one, opens a hotspot that is shown there, goes where
     /// an open one leads, or closes it from beside it.
     Tap(DVec2),
     /// Shows or hides the hotspots of the side in view.
     Hotspots,
     /// Shows the hotspots and opens the next one (1) or the one before (−1).
     StepHotspot(i32),
-    /// To the scene of the open hotspot.
+    /// Ends what is being measured, or else goes to the scene of the open hotspot.
     GoOn,
+    /// Takes the next measuring tool (1) or the one before (−1), with none between the last and the
+    /// first.
+    StepTool(i32),
+    /// Takes back the last place of a tool, or else the last that was measured.
+    TakeBack,
+    /// Says, or no longer says, what lies under the pointer.
+    ReadOut,
+    /// To the next category (1) of the uppermost overlay that has some, or back (−1), shown alone,
+    /// with all of them between the last and the first.
+    StepCategory(i32),
+    /// Exports what is seen, as a print or in numbers, with what was measured.
+    Export {
+        linear: bool,
+    },
     /// Saves the view as a scene of the manifest.
     SaveView,
     /// Prints a link to the view.
@@ -86,7 +100,7 @@ pub enum Intent {
     /// Shows or hides the list of keys.
     Keys,
     Fullscreen,
-    /// Closes the hotspot that is open, or else the window.
+    /// Puts the tool away, closes the hotspot that is open, or else the window.
     Quit,
 }
 

@@ -9,7 +9,7 @@ use super::caption::Texts;
 use crate::{
     manifest::{
         comparison::Part,
-        exhibit::{Drawing, SideName, Surface},
+        exhibit::{Drawing, Scene, SideName, Surface},
         eye::Eye,
         surface::SideSurface,
     },
@@ -103,6 +103,15 @@ impl Shape {
     }
 }
 
+#[cfg(test)]
+impl Shape {
+    /// Of a flat drawing, without a stage.
+    pub fn flat(drawing: &Drawing) -> Self {
+        let shape = Arc::new(SideSurface::flat(drawing.size_mm));
+        Self(Some((drawing.surface.clone(), drawing.size_mm, shape)))
+    }
+}
+
 /// Learns how the sheet is shaped. On the stage it is loaded, and looking at it is no change.
 pub fn learn(
     shown: Res<Shown>,
@@ -158,8 +167,10 @@ pub fn on_sheet(
 }
 
 /// A sheet in the picture, and the side of it that is seen.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct InView {
+    /// Without a comparison of its own.
+    pub scene: Scene,
     pub side: SideName,
     pub lying: Lying,
     clip: DMat4,
@@ -204,6 +215,7 @@ pub fn in_view(shown: &Shown) -> Vec<InView> {
                 clip: member.part.clip_from_own()
                     * eye.clip_from_table(aspect)
                     * DMat4::from_quat(member.pose),
+                scene: member.scene,
             }
         })
         .collect()

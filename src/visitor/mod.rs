@@ -8,14 +8,19 @@
 //! | comparisons in the hand | `comparing` |
 //! | hotspots under the hand | `hotspots` |
 //! | the view as a scene or a link | `saving` |
+//! | tools in the hand, and what they read | `measuring`, `reader`, `tools` |
+//! | what was measured, and what lies under the pointer | `board` |
 //! | lines and words that lie on the sheet | `marks` |
+//! | the view as a figure, and what was measured as a table | `export` |
 //! | texts | `caption` |
 //! | which tier serves what is shown | `foresight` |
 //! | the window, and its rest | `window` |
 
+mod board;
 mod caption;
 mod comparing;
 mod display;
+mod export;
 mod foresight;
 pub mod hand;
 mod hotspots;
@@ -23,12 +28,18 @@ mod input;
 mod intent;
 mod lamp;
 mod marks;
+mod measuring;
 mod motion;
+mod reader;
 mod saving;
+mod tools;
 mod view;
 mod window;
 
-use std::{path::Path, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 pub use caption::KEYS;
 pub use display::NoDisplay;
@@ -57,6 +68,8 @@ pub struct ShowOptions {
     /// Width and height of the window in pixels.
     pub size: Option<[u32; 2]>,
     pub fullscreen: bool,
+    /// Where figures are exported to; without it, the folder that the program was started in.
+    pub export: Option<PathBuf>,
 }
 
 /// Why there is no window.

@@ -1,6 +1,6 @@
 //! What a hand can change of a scene, and what of it outlives a new version of the exhibit.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use glam::DVec2;
 
@@ -39,6 +39,8 @@ pub struct View {
     pub state: Option<usize>,
     /// Every overlay of the drawing, those of the scene first, from the lowest.
     layers: Vec<Layer>,
+    /// Of overlays of which not all categories are shown, those that are, as in a scene.
+    pub categories: BTreeMap<usize, Vec<usize>>,
     /// Of the first lamp that can be moved.
     pub lamp: Option<LampPlace>,
     pub compare: Option<Comparison>,
@@ -74,6 +76,7 @@ impl View {
             camera: scene.camera,
             state: scene.state,
             layers,
+            categories: scene.categories.clone(),
             lamp: movable_lamp(exhibit, scene).and_then(|lamp| LampPlace::of(&exhibit.lamps[lamp])),
             compare: scene.compare.clone(),
             enhance: scene.enhance,
@@ -117,6 +120,10 @@ impl View {
                 }
             }
         }
+        // Categories are known by their places.
+        if self.categories != written.categories && before.overlays == after.overlays {
+            view.categories = self.categories.clone();
+        }
         if self.lamp != written.lamp && view.lamp.is_some() {
             view.lamp = self.lamp;
         }
@@ -157,6 +164,7 @@ impl View {
                 self.step_overlay(drawing);
             }
             Intent::Opacity(by) => self.fade(by),
+            Intent::StepCategory(by) => self.step_category(drawing, by),
             Intent::ShiftCompare(by) => {
                 if let Some(comparison) = &mut self.compare {
                     comparing::shift(comparison, by);
@@ -204,6 +212,7 @@ impl View {
         let compared = |view: &Self| view.compare.as_ref().map(|c| (c.mode, c.of.clone()));
         (self.side, self.state) == (other.side, other.state)
             && self.layers == other.layers
+            && self.categories == other.categories
             && compared(self) == compared(other)
             && self.enhance.relief_only == other.enhance.relief_only
             && (self.transmitted > 0.0) == (other.transmitted > 0.0)
@@ -246,6 +255,29 @@ impl View {
             // One that the scene names at no opacity would stay unseen.
             layer.opacity = layer.opacity.max(FAINTEST);
         }
+    }
+
+    /// To the next category of the uppermost overlay in view that has more than one, alone, or back,
+    /// with all of them between the last and the first.
+    fn step_category(&mut self, drawing: &Drawing, by: i32) {
+        let entries = |overlay: usize| match &drawing.overlays[overlay].kind {
+            OverlayKind::Categorical(entries) if entries.len() > 1 => Some(entries.len()),
+            _ => None,
+        };
+        let shown = self.overlays(drawing, self.side);
+        let found = shown.iter().rev();
+        let found = found.filter_map(|(overlay, _)| Some((*overlay, entries(*overlay)?)));
+        let Some((overlay, count)) = found.into_iter().next() else {
+            return;
+        };
+        let alone = match self.categories.get(&overlay).map(Vec::as_slice) {
+            Some([one]) => one + 1,
+            _ => 0,
+        };
+        match wrapped(alone, by, count + 1).checked_sub(1) {
+            Some(one) => self.categories.insert(overlay, vec![one]),
+            None => self.categories.remove(&overlay),
+        };
     }
 
     /// Makes the overlays that are on stronger or fainter.

@@ -27,15 +27,19 @@ use bevy::{
 use wgpu::DeviceType;
 
 use super::{
-    NoDisplay, ShowOptions,
+    NoDisplay, ShowOptions, board,
     caption::{self, Texts},
+    export::{self, Exports},
     foresight::{Foresight, Observed, foresee},
     hand::{Hand, Picture, Retreat},
     hotspots,
     input::Devices,
     intent::Intent,
     marks::{self, Marks, Shape},
+    measuring::Measuring,
+    reader::Reader,
     saving::{self, Saved},
+    tools::{self, Pointer},
 };
 use crate::{
     device,
@@ -112,6 +116,10 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         .init_resource::<Foresight>()
         .init_resource::<Shape>()
         .init_resource::<Marks>()
+        .init_resource::<Measuring>()
+        .init_resource::<Pointer>()
+        .init_resource::<Reader>()
+        .insert_resource(Exports::into(options.export.clone()))
         .insert_resource(PictureSize(UVec2::ONE))
         .add_message::<Intent>()
         .add_plugins((
@@ -130,9 +138,11 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
                     take_in_reread,
                     measure,
                     read_devices,
+                    tools::follow,
                     steer,
                     follow_wishes,
                     saving::keep,
+                    export::export,
                 )
                     .chain()
                     .in_set(StageSet::Steer),
@@ -141,7 +151,11 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
                     foresee,
                     marks::learn,
                     hotspots::lay,
+                    tools::hear,
+                    tools::point,
+                    tools::lay,
                     marks::draw,
+                    board::write,
                     caption::draw,
                     rest,
                 )
@@ -305,7 +319,7 @@ fn read_devices(
 /// Moves the hand, and shows what changed.
 fn steer(
     mut intents: MessageReader<Intent>,
-    mut hand: ResMut<Hand>,
+    (mut hand, measuring): (ResMut<Hand>, Res<Measuring>),
     time: Res<Time<Real>>,
     (arranged, foresight, mut pace): (Res<Arranged>, Res<Foresight>, ResMut<Pace>),
     mut shown: ResMut<Shown>,
@@ -315,6 +329,9 @@ fn steer(
     hand.advance(time.delta_secs_f64(), arranged.is_settled());
     let mut moving = hand.is_moving();
     for intent in intents.read() {
+        if measuring.kind().is_some() && tools::is_for_tool(*intent) {
+            continue;
+        }
         hand.apply(*intent);
         moving |= intent.is_motion();
     }
@@ -343,7 +360,7 @@ fn differs(a: &Shown, b: &Shown) -> bool {
 fn follow_wishes(
     mut intents: MessageReader<Intent>,
     mut closed: MessageReader<WindowCloseRequested>,
-    (mut hand, mut texts): (ResMut<Hand>, ResMut<Texts>),
+    (mut hand, mut measuring, mut texts): (ResMut<Hand>, ResMut<Measuring>, ResMut<Texts>),
     mut windows: Query<&mut Window, With<PrimaryWindow>>,
     mut exit: MessageWriter<AppExit>,
 ) {
@@ -356,7 +373,10 @@ fn follow_wishes(
                     window.mode = mode(window.mode == WindowMode::Windowed);
                 }
             }
-            // What is open closes first.
+            // What is in the hand, or open, goes first.
+            Intent::Quit if measuring.bypass_change_detection().put_away() => {
+                measuring.set_changed();
+            }
             Intent::Quit if hand.bypass_change_detection().close_hotspot() => texts.set_changed(),
             Intent::Quit => drop(exit.write(AppExit::Success)),
             _ => {}

@@ -249,6 +249,7 @@ impl Hand {
             Intent::StepState(_)
             | Intent::StepOverlay
             | Intent::Opacity(_)
+            | Intent::StepCategory(_)
             | Intent::ShiftCompare(_)
             | Intent::TurnCompare(_)
             | Intent::Transmit(_)
@@ -276,7 +277,11 @@ impl Hand {
             Intent::Tap(_) | Intent::Hotspots | Intent::StepHotspot(_) | Intent::GoOn => {
                 self.point_out(intent);
             }
-            Intent::SaveView
+            Intent::StepTool(_)
+            | Intent::TakeBack
+            | Intent::ReadOut
+            | Intent::Export { .. }
+            | Intent::SaveView
             | Intent::Link
             | Intent::Caption
             | Intent::Keys
@@ -373,6 +378,7 @@ impl Hand {
             }
         }
         scene.overlays = self.view.overlays(drawing, scene.side);
+        scene.categories.clone_from(&self.view.categories);
         let pose = self.turned() * self.half_turned(progress);
         Shown {
             exhibit: self.lit.clone(),
@@ -392,6 +398,11 @@ impl Hand {
             both_sides: self.both_sides || self.is_steep(),
             aspect: self.picture.aspect,
         }
+    }
+
+    /// What is shown belongs to it, with its lamps where they are written.
+    pub fn exhibit(&self) -> &Arc<Exhibit> {
+        &self.exhibit
     }
 
     /// What is shown as a scene, at rest, with the exhibit that its lamps belong to.

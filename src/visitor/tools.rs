@@ -1,0 +1,551 @@
+//! Tools and the pointer on the sheet that is shown: from wishes to what is asked of the maps, and
+//! from what they say to marks over the picture.
+
+use bevy::prelude::*;
+use glam::DVec2;
+
+use super::{
+    caption::Texts,
+    hand::Hand,
+    input::Devices,
+    intent::Intent,
+    marks::{self, InView, Ink, Mark, Marks, Shape},
+    measuring::{self, Kind, Laid, Measuring},
+    reader::{Answer, Errand, Reader},
+};
+use crate::{
+    manifest::{
+        exhibit::{Scene, SideName},
+        frames::other_side,
+    },
+    readings::{
+        Under,
+        sight::{Seen, Sight},
+    },
+    stage::{Shown, Waker},
+};
+
+/// What lies under the pointer.
+#[derive(Resource, Debug, Default)]
+pub struct Pointer {
+    /// Somebody asked for what lies there.
+    wanted: bool,
+    /// Where it is on the sheet.
+    seen: Option<Seen>,
+    /// What was asked for last.
+    asked: Option<(Scene, DVec2)>,
+    /// And what is there.
+    under: Option<Result<Under, String>>,
+}
+
+impl Pointer {
+    /// Whether somebody asked for what lies there.
+    pub fn is_read(&self) -> bool {
+        self.wanted
+    }
+
+    /// What lies under it, or why that is not known; nothing beside the sheet.
+    pub fn under(&self) -> Option<&Result<Under, String>> {
+        self.under.as_ref().filter(|_| self.wanted)
+    }
+}
+
+/// The drawing's sheets in the picture, in logical pixels.
+struct View {
+    sheets: Vec<InView>,
+    sight: Option<Sight>,
+}
+
+impl View {
+    fn new(shown: &Shown, shape: &Shape, size: Vec2) -> Self {
+        let drawing = shown.exhibit.drawing_of(&shown.scene);
+        let sheets = marks::in_view(shown);
+        let lying = sheets.iter().map(|sheet| sheet.lying).collect();
+        let sight = shape
+            .of(drawing)
+            .map(|surface| Sight::of(drawing, surface.clone(), size.as_dvec2(), lying));
+        Self { sheets, sight }
+    }
+
+    /// What is seen of the sheet itself, without the margin of its mesh.
+    fn seen(&self, shown: &Shown, at: Vec2) -> Option<Seen> {
+        let seen = self.sight.as_ref()?.seen(at.as_dvec2())?;
+        let size_mm = shown.exhibit.drawing_of(&shown.scene).size_mm;
+        measuring::is_on(seen.mm, size_mm).then_some(seen)
+    }
+
+    /// The scene whose side is read where something is seen.
+    fn scene(&self, shown: &Shown, sheet: usize, side: SideName) -> Scene {
+        Scene {
+            side,
+            // What two states are told apart by.
+            compare: shown.scene.compare.clone(),
+            ..self.sheets[sheet].scene.clone()
+        }
+    }
+}
+
+/// Whether a wish is the tool's that is in the hand, and nobody else's.
+pub fn is_for_tool(intent: Intent) -> bool {
+    matches!(
+        intent,
+        Intent::Tap(_) | Intent::TrueSize { .. } | Intent::GoOn
+    )
+}
+
+/// Follows wishes that are about tools and the pointer.
+pub fn follow(
+    mut intents: MessageReader<Intent>,
+    (hand, shown, shape): (Res<Hand>, Res<Shown>, Res<Shape>),
+    windows: Query<&Window>,
+    (mut measuring, mut pointer, mut texts): (ResMut<Measuring>, ResMut<Pointer>, ResMut<Texts>),
+    (mut reader, waker): (ResMut<Reader>, Res<Waker>),
+) {
+    let mut ask = |laid: &Laid, view: &View| {
+        // A tool that was begun on a sheet that is gone is read on the first.
+        let sheet = laid.sheet.min(view.sheets.len().saturating_sub(1));
+        let errand = Errand::Tool {
+            number: laid.number,
+            tool: laid.tool.clone(),
+            screen_mm: laid.screen_mm,
+        };
+        let scene = view.scene(&shown, sheet, laid.on.side);
+        reader.ask(hand.exhibit().clone(), scene, errand, &waker);
+    };
+    for intent in intents.read() {
+        let Ok(window) = windows.single() else {
+            return;
+        };
+        let has_tool = measuring.kind().is_some();
+        match *intent {
+            Intent::StepTool(by) => {
+                measuring.step(by);
+                texts.notice = None;
+            }
+            Intent::TakeBack => measuring.take_back(),
+            Intent::Home => measuring.clear(),
+            Intent::ReadOut => {
+                pointer.wanted = !pointer.wanted;
+                pointer.asked = None;
+                pointer.under = None;
+            }
+            intent if has_tool && is_for_tool(intent) => {
+                let view = View::new(&shown, &shape, window.size());
+                let laid = match intent {
+                    // A sheet that is being turned is not measured.
+                    Intent::Tap(at) if !hand.is_moving() => {
+                        let drawing = shown.exhibit.drawing_of(&shown.scene);
+                        let seen = view.seen(&shown, marks::px(at, window.size()));
+                        seen.and_then(|seen| measuring.lay(&drawing.id, &seen))
+                    }
+                    Intent::TrueSize { .. } => measuring.end_by_click(),
+                    Intent::GoOn => measuring.end(),
+                    _ => None,
+                };
+                if let Some(laid) = laid.filter(|_| !view.sheets.is_empty()) {
+                    ask(laid, &view);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Takes in what was read.
+pub fn hear(
+    mut reader: ResMut<Reader>,
+    (mut measuring, mut pointer): (ResMut<Measuring>, ResMut<Pointer>),
+) {
+    for answer in reader.bypass_change_detection().answers() {
+        match answer {
+            Answer::Tool(number, said) => measuring.hear(number, said),
+            Answer::Under(place, under) => {
+                let asked = pointer.asked.as_ref().map(|(_, place)| *place);
+                if asked == Some(place) {
+                    pointer.under = Some(under);
+                }
+            }
+        }
+    }
+}
+
+/// Points: shows the same place of every other sheet, and asks what lies there.
+pub fn point(
+    (devices, shown, shape, hand): (Res<Devices>, Res<Shown>, Res<Shape>, Res<Hand>),
+    windows: Query<&Window>,
+    (mut pointer, mut marks): (ResMut<Pointer>, ResMut<Marks>),
+    (mut reader, waker): (ResMut<Reader>, Res<Waker>),
+) {
+    if !(devices.is_changed() || shown.is_changed() || shape.is_changed() || pointer.is_changed()) {
+        return;
+    }
+    let Ok(window) = windows.single() else {
+        return;
+    };
+    let view = View::new(&shown, &shape, window.size());
+    let seen = devices.pointer().and_then(|at| view.seen(&shown, at));
+    if pointer.seen != seen {
+        pointer.bypass_change_detection().seen = seen;
+        pointer.set_changed();
+    }
+    let mut rings = Vec::new();
+    if let (Some(seen), Some(sight)) = (&seen, &view.sight) {
+        for (number, sheet) in view.sheets.iter().enumerate() {
+            if number == seen.sheet {
+                continue;
+            }
+            let drawing = shown.exhibit.drawing_of(&shown.scene);
+            // A place of the recto lies over one of the verso.
+            let place = match sheet.side == seen.side {
+                true => seen.mm,
+                false => other_side(seen.mm, drawing.size_mm, drawing.flip),
+            };
+            rings.extend(sight.pixel(number, sheet.side, place).map(|at| Mark::Ring {
+                middle: at.as_vec2(),
+                ink: Ink::Open,
+            }));
+        }
+    }
+    if marks.pointer != rings {
+        marks.pointer = rings;
+    }
+    if !pointer.wanted || hand.is_moving() {
+        return;
+    }
+    let Some(seen) = seen else {
+        let silent = pointer.bypass_change_detection();
+        let had = silent.under.take().is_some() | silent.asked.take().is_some();
+        if had {
+            pointer.set_changed();
+        }
+        return;
+    };
+    let scene = view.scene(&shown, seen.sheet, seen.side);
+    // Where eye and lamps are makes no difference to a map.
+    let asked = pointer.asked.as_ref().is_some_and(|(was, place)| {
+        let same = |a: &Scene, b: &Scene| {
+            (a.drawing, a.side, a.state) == (b.drawing, b.side, b.state)
+                && a.overlays == b.overlays
+                && a.compare.as_ref().map(|c| &c.of) == b.compare.as_ref().map(|c| &c.of)
+        };
+        *place == seen.mm && same(was, &scene)
+    });
+    if !asked {
+        pointer.bypass_change_detection().asked = Some((scene.clone(), seen.mm));
+        let errand = Errand::Under(seen.mm);
+        reader.ask(hand.exhibit().clone(), scene, errand, &waker);
+    }
+}
+
+/// Lays what is measured over the picture.
+pub fn lay(
+    (measuring, pointer, shown, shape): (Res<Measuring>, Res<Pointer>, Res<Shown>, Res<Shape>),
+    windows: Query<&Window>,
+    mut marks: ResMut<Marks>,
+) {
+    let Ok(window) = windows.single() else {
+        return;
+    };
+    let drawing = shown.exhibit.drawing_of(&shown.scene);
+    let surface = shape.of(drawing).map(|surface| &**surface);
+    let picture = (shown.aspect, window.size());
+    let mut wanted = Vec::new();
+    let empty = measuring.laid().is_empty() && measuring.laying().is_none();
+    let sheets = if empty {
+        Vec::new()
+    } else {
+        marks::in_view(&shown)
+    };
+    for (number, sheet) in sheets.iter().enumerate() {
+        let is_here = |drawing_id: &str, side| drawing_id == drawing.id && side == sheet.side;
+        let seen = |places: &[DVec2], closed| -> Option<Vec<DVec2>> {
+            let line = marks::on_sheet(drawing, surface, sheet.side, places, closed);
+            line.iter().map(|point| sheet.ndc(*point)).collect()
+        };
+        let draw = |wanted: &mut Vec<Mark>,
+                    places: &[DVec2],
+                    line: &[DVec2],
+                    closed: bool|
+         -> Option<Vec<DVec2>> {
+            let part = &sheet.lying.part;
+            let line = seen(line, closed)?;
+            wanted.extend(marks::lines(&line, closed, part, picture, Ink::Measured));
+            let places: Option<Vec<DVec2>> = places
+                .iter()
+                .map(|place| seen(&[*place], false)?.pop())
+                .collect();
+            let shows = |at: &DVec2| part.shows(*at, shown.aspect);
+            let places: Vec<DVec2> = places?.into_iter().filter(shows).collect();
+            wanted.extend(places.iter().map(|at| Mark::Ring {
+                middle: marks::px(*at, window.size()),
+                ink: Ink::Measured,
+            }));
+            Some(places)
+        };
+        for laid in measuring.laid() {
+            if !is_here(&laid.on.drawing, laid.on.side) {
+                continue;
+            }
+            let (line, closed) = outline(laid.kind, &laid.places);
+            let places = draw(&mut wanted, &laid.places, &line, closed);
+            let is_own = laid.sheet == number || laid.sheet >= sheets.len();
+            let last = places.and_then(|places| places.last().copied());
+            if let Some(at) = last.filter(|_| is_own) {
+                wanted.push(Mark::Words {
+                    at: marks::px(at, window.size()),
+                    text: laid.label(),
+                });
+            }
+        }
+        let laying = measuring.laying().zip(measuring.kind());
+        if let Some((laying, kind)) = laying.filter(|(l, _)| is_here(&l.on.drawing, l.on.side)) {
+            // To where the next place would be.
+            let next = pointer.seen.filter(|seen| seen.side == laying.on.side);
+            let mut places = laying.places.clone();
+            places.extend(next.map(|seen| seen.mm));
+            let (line, closed) = outline(kind, &places);
+            draw(&mut wanted, &laying.places, &line, closed);
+        }
+    }
+    if marks.measured != wanted {
+        marks.measured = wanted;
+    }
+}
+
+/// The line that is drawn through the places of a tool, and whether it is closed.
+fn outline(kind: Kind, places: &[DVec2]) -> (Vec<DVec2>, bool) {
+    match (kind, places) {
+        (Kind::Lines, &[a, b]) => (measuring::rectangle([a, b]), true),
+        // Nothing lies between two discs.
+        (Kind::Difference, _) => (Vec::new(), false),
+        _ => (places.to_vec(), kind.is_closed()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{
+        fs,
+        sync::Arc,
+        time::{Duration, Instant},
+    };
+
+    use bevy::window::WindowEvent;
+
+    use super::*;
+    use crate::{
+        manifest::Exhibit,
+        maps::encode,
+        optics::tier::Tier,
+        visitor::{hand::Picture, measuring::Said},
+    };
+
+    const SIZE: Vec2 = Vec2::new(400.0, 200.0);
+    /// How long a small picture may take to be read on a slow machine.
+    const PATIENCE: Duration = Duration::from_secs(60);
+
+    /// A sheet of 200 × 100 mm with two sides, in a window that it fills.
+    fn app(compare: &str) -> (tempfile::TempDir, App) {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for (name, grey) in [("recto.png", 200), ("verso.png", 40)] {
+            let pixels = vec![[grey; 3]; 40 * 20];
+            encode::save_png_rgb8(&folder.path().join(name), 40, 20, &pixels, None)
+                .expect("written");
+        }
+        let manifest = format!(
+            "[exhibit]\ntitle = \"One sheet\"\n[[drawing]]\nid = \"sheet\"\n\
+             size_mm = [200.0, 100.0]\nrecto.albedo = \"recto.png\"\n\
+             verso.albedo = \"verso.png\"\n[[scene]]\nid = \"scene\"\ndrawing = \"sheet\"\n\
+             camera = {{ centre_mm = [100, 50], width_mm = 200 }}\n{compare}\n"
+        );
+        fs::write(folder.path().join("exhibit.toml"), manifest).expect("written");
+        let (exhibit, _) = Exhibit::read(folder.path()).expect("a sound exhibit");
+        let picture = Picture {
+            aspect: 2.0,
+            width_mm: 400.0,
+            measured: true,
+        };
+        let hand = Hand::new(Arc::new(exhibit), 0, Tier::Draft, picture, true);
+        let mut app = App::new();
+        app.world_mut().spawn(Window {
+            resolution: (SIZE.x as u32, SIZE.y as u32).into(),
+            ..default()
+        });
+        let mut devices = Devices::default();
+        devices.resize(SIZE);
+        app.insert_resource(hand.shown())
+            .insert_resource(Shape::flat(hand.drawing()))
+            .insert_resource(hand)
+            .insert_resource(devices)
+            .insert_resource(Waker(Arc::new(|| {})))
+            .init_resource::<Measuring>()
+            .init_resource::<Pointer>()
+            .init_resource::<Texts>()
+            .init_resource::<Reader>()
+            .init_resource::<Marks>()
+            .add_message::<Intent>()
+            .add_systems(Update, (follow, show, hear, point, lay).chain());
+        (folder, app)
+    }
+
+    fn show(hand: Res<Hand>, mut shown: ResMut<Shown>) {
+        *shown = hand.shown();
+    }
+
+    fn wish(app: &mut App, intent: Intent) {
+        app.world_mut().write_message(intent);
+        app.update();
+    }
+
+    /// Clicks on a place in mm from the top left corner of the side in view.
+    fn click(app: &mut App, x: f64, y: f64) {
+        wish(
+            app,
+            Intent::Tap(DVec2::new(x / 100.0 - 1.0, 1.0 - y / 50.0)),
+        );
+    }
+
+    fn points_at(app: &mut App, x: f32, y: f32) {
+        let event = WindowEvent::CursorMoved(CursorMoved {
+            window: Entity::PLACEHOLDER,
+            position: Vec2::new(x, y),
+            delta: None,
+        });
+        let mut devices = app.world_mut().resource_mut::<Devices>();
+        devices.take(&event, Duration::ZERO, |_| {});
+        app.update();
+    }
+
+    fn until<T>(app: &mut App, look: impl Fn(&App) -> Option<T>) -> T {
+        let begun = Instant::now();
+        loop {
+            if let Some(found) = look(app) {
+                return found;
+            }
+            assert!(begun.elapsed() < PATIENCE, "it never comes");
+            std::thread::sleep(Duration::from_millis(5));
+            app.update();
+        }
+    }
+
+    fn last(app: &App) -> Option<Laid> {
+        let laid = app.world().resource::<Measuring>().laid().last()?;
+        (laid.said != Said::Waiting).then(|| laid.clone())
+    }
+
+    fn words(app: &App) -> Vec<String> {
+        let marks = &app.world().resource::<Marks>().measured;
+        let words = marks.iter().filter_map(|mark| match mark {
+            Mark::Words { text, .. } => Some(text.clone()),
+            _ => None,
+        });
+        words.collect()
+    }
+
+    #[test]
+    fn a_ruler_measures_where_it_was_laid_and_goes_with_its_side() {
+        let (_folder, mut app) = app("");
+        click(&mut app, 20.0, 50.0);
+        assert_eq!(last(&app), None, "no tool is in the hand");
+        wish(&mut app, Intent::StepTool(1));
+        click(&mut app, 20.0, 50.0);
+        click(&mut app, 180.0, 50.0);
+        let laid = until(&mut app, last);
+        let Said::Read(reading) = &laid.said else {
+            panic!("{:?}", laid.said)
+        };
+        let [value, sigma] = [reading.values[0].value, reading.values[0].sigma].map(Option::unwrap);
+        assert!((value - 160.0).abs() < 1e-6, "{value}");
+        // Pixels of half a millimetre on the screen, and of five in the picture.
+        assert!(sigma > 0.5 && sigma < 5.0, "{sigma}");
+        assert_eq!(words(&app), [reading.values[0].words()]);
+        let marks = app.world().resource::<Marks>().measured.clone();
+        assert!(marks.contains(&Mark::Line {
+            from: Vec2::new(40.0, 100.0),
+            to: Vec2::new(360.0, 100.0),
+            ink: Ink::Measured,
+        }));
+        // The other side does not have it, and a turn back shows it again.
+        for (side, count) in [(SideName::Verso, 0), (SideName::Recto, 1)] {
+            app.world_mut().resource_mut::<Hand>().apply(Intent::Flip);
+            app.update();
+            assert_eq!(app.world().resource::<Shown>().scene.side, side);
+            app.update();
+            assert_eq!(words(&app).len(), count);
+        }
+    }
+
+    #[test]
+    fn a_click_beside_the_sheet_lays_nothing() {
+        let (_folder, mut app) = app("");
+        wish(
+            &mut app,
+            Intent::Zoom {
+                at: DVec2::ZERO,
+                factor: 0.5,
+            },
+        );
+        wish(&mut app, Intent::StepTool(1));
+        click(&mut app, -5.0, 50.0);
+        assert!(app.world().resource::<Measuring>().laying().is_none());
+        click(&mut app, 100.0, 50.0);
+        assert!(app.world().resource::<Measuring>().laying().is_some());
+    }
+
+    #[test]
+    fn a_side_without_heights_says_why_there_is_no_profile() {
+        let (_folder, mut app) = app("");
+        for _ in 0..5 {
+            wish(&mut app, Intent::StepTool(1));
+        }
+        click(&mut app, 20.0, 50.0);
+        click(&mut app, 180.0, 50.0);
+        let laid = until(&mut app, last);
+        assert_eq!(laid.kind, Kind::Profile);
+        assert!(matches!(&laid.said, Said::Nothing(why) if why.contains("height map")));
+    }
+
+    #[test]
+    fn the_pointer_reads_the_side_that_it_points_at() {
+        let (_folder, mut app) = app("");
+        points_at(&mut app, 100.0, 50.0);
+        assert!(
+            app.world().resource::<Pointer>().under().is_none(),
+            "nobody asked"
+        );
+        wish(&mut app, Intent::ReadOut);
+        let under = |app: &App| Some(app.world().resource::<Pointer>().under()?.clone().unwrap());
+        let read = until(&mut app, under).lines;
+        assert!(read[0].starts_with("50,25 mm · L* 8"), "{read:?}");
+        app.world_mut().resource_mut::<Hand>().apply(Intent::Flip);
+        app.update();
+        let dark = |app: &App| under(app).filter(|under| under.lines[0].contains("L* 1"));
+        until(&mut app, dark);
+        // Beside the sheet nothing lies under it.
+        points_at(&mut app, -50.0, 50.0);
+        assert!(app.world().resource::<Pointer>().under().is_none());
+    }
+
+    #[test]
+    fn one_pointer_is_on_both_sides() {
+        let beside = "compare = { mode = \"side-by-side\", of = [\"side:recto\", \"side:verso\"] }";
+        let (_folder, mut app) = app(beside);
+        // Cells of 200 × 200 pixels, whose sheets are a pixel to the mm.
+        points_at(&mut app, 30.0, 90.0);
+        let [Mark::Ring { middle, .. }] = app.world().resource::<Marks>().pointer[..] else {
+            panic!("{:?}", app.world().resource::<Marks>().pointer)
+        };
+        // The sheet is turned over about its upright axis: left is right.
+        assert!(middle.distance(Vec2::new(370.0, 90.0)) < 1e-3, "{middle}");
+        points_at(&mut app, 370.0, 90.0);
+        let [Mark::Ring { middle, .. }] = app.world().resource::<Marks>().pointer[..] else {
+            panic!("no ring on the recto")
+        };
+        assert!(middle.distance(Vec2::new(30.0, 90.0)) < 1e-3, "{middle}");
+        points_at(&mut app, 30.0, 10.0);
+        assert!(
+            app.world().resource::<Marks>().pointer.is_empty(),
+            "beside the sheet"
+        );
+    }
+}
