@@ -13,7 +13,7 @@
 //! | [`needs`] | what a scene requires and why: terms, maps, sides |
 //! | [`sheet`] | the sheet in Bevy: mesh, the one material, the narrowing from f64 to f32 (the last pass of [`stage`] has its own) |
 //! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
-//! | [`visitor`] | the window: hand, lamp, keys, caption, hotspots, views saved |
+//! | [`visitor`] | the window: hand, lamp, keys, caption, hotspots, tools, views saved and exported |
 //! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
 //! | [`figure`] | a print that can be made again: its scale bar and its sidecar |
