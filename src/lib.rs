@@ -11,7 +11,7 @@
 //! | [`measure`] | lengths, profiles, laid lines, strokes and colours, each with its uncertainty |
 //! | [`manifest`] | `exhibit.toml` → a validated [`Exhibit`](manifest::Exhibit), or every fault at once |
 //! | [`needs`] | what a scene requires and why: terms, maps, sides |
-//! | [`sheet`] | the sheet in Bevy: mesh, the one material, the narrowing from f64 to f32 (the last pass of [`stage`] has its own) |
+//! | [`sheet`] | the sheet in Bevy: mesh, its one material and that of the last pass, the narrowing from f64 to f32 |
 //! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
 //! | [`visitor`] | the window: hand, lamp, keys, caption, hotspots, tools, views saved and exported |
 //! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |

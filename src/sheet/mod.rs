@@ -1,5 +1,6 @@
 //! The sheet in Bevy: its mesh, its material, and the one place where f64 becomes f32.
 
+pub mod composite;
 pub mod material;
 pub mod mesh;
 pub mod rows;
@@ -42,7 +43,7 @@ pub const PAPER_MEDIA_MODULE: &str = concat!(
     include_str!("../../shaders/paper_media.wgsl")
 );
 
-/// Registers the shaders and the sheet's material.
+/// Registers the shaders, the sheet's material and that of the last pass.
 pub struct SheetPlugin;
 
 impl Plugin for SheetPlugin {
@@ -58,6 +59,9 @@ impl Plugin for SheetPlugin {
         ] {
             registry.insert_asset(path.into(), Path::new(path), text.as_bytes());
         }
-        app.add_plugins(MaterialPlugin::<PaperMaterial>::default());
+        app.add_plugins((
+            MaterialPlugin::<PaperMaterial>::default(),
+            MaterialPlugin::<composite::CompositeMaterial>::default(),
+        ));
     }
 }

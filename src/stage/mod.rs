@@ -17,7 +17,7 @@ pub use crate::manifest::lighting::TABLE;
 pub use library::{Library, Waker};
 pub use sides::Arranged;
 
-use composite::{Composite, CompositeMaterial};
+use composite::Composite;
 
 use crate::{
     manifest::{
@@ -144,28 +144,24 @@ pub struct StagePlugin {
 
 impl Plugin for StagePlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((
-            SheetPlugin,
-            legend::LegendPlugin,
-            MaterialPlugin::<CompositeMaterial>::default(),
-        ))
-        .init_resource::<Composite>()
-        .insert_resource(Library::new(self.anisotropy))
-        .insert_resource(Arranged::new(self.display))
-        .add_systems(Startup, library::suit_device)
-        .configure_sets(Update, (StageSet::Steer, StageSet::Arrange).chain())
-        .add_systems(
-            Update,
-            (
-                library::receive,
-                sides::arrange,
-                composite::compose,
-                composite::follow,
-                composite::retire,
-            )
-                .chain()
-                .in_set(StageSet::Arrange)
-                .run_if(resource_exists::<Shown>),
-        );
+        app.add_plugins((SheetPlugin, legend::LegendPlugin))
+            .init_resource::<Composite>()
+            .insert_resource(Library::new(self.anisotropy))
+            .insert_resource(Arranged::new(self.display))
+            .add_systems(Startup, library::suit_device)
+            .configure_sets(Update, (StageSet::Steer, StageSet::Arrange).chain())
+            .add_systems(
+                Update,
+                (
+                    library::receive,
+                    sides::arrange,
+                    composite::compose,
+                    composite::follow,
+                    composite::retire,
+                )
+                    .chain()
+                    .in_set(StageSet::Arrange)
+                    .run_if(resource_exists::<Shown>),
+            );
     }
 }
