@@ -72,6 +72,20 @@ impl Part {
         self.lines.iter().all(beside) && s * (r * r - from_centre.length_squared()) >= 0.0
     }
 
+    /// A place near the upper end of what the member has of a picture of `aspect`, in its middle;
+    /// `None` where that is nothing.
+    pub fn top(&self, aspect: f64) -> Option<DVec2> {
+        let at = |k: usize| (k as f64 + 0.5) / LOOKS as f64 * 2.0 - 1.0;
+        (0..LOOKS).rev().find_map(|row| {
+            let shows = |column: &usize| self.shows(DVec2::new(at(*column), at(row)), aspect);
+            let columns: Vec<usize> = (0..LOOKS).filter(shows).collect();
+            // What another member lies in has two ends: in the middle of the longer one.
+            let runs = columns.chunk_by(|a, b| a + 1 == *b);
+            let run = runs.max_by_key(|run| run.len())?;
+            Some(DVec2::new(at(run[run.len() / 2]), at(row)))
+        })
+    }
+
     /// The curtain's part `k` of `count`: bands across the direction at `angle` (radians,
     /// anticlockwise from the right), the first two of two divided at the share `at` of the way.
     fn band(k: usize, count: usize, at: f64, angle: f64, aspect: f64) -> Self {
@@ -157,6 +171,31 @@ fn edge(k: usize, count: usize, at: f64, reach: f64) -> f64 {
     reach * (2.0 * share - 1.0)
 }
 
+/// The straight line where `across` · place = `at`, within the picture.
+fn straight(across: DVec2, at: f64) -> Option<Vec<DVec2>> {
+    let foot = across * at / across.length_squared();
+    let along = across.perp().normalize();
+    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+    for (place, step) in [(foot.x, along.x), (foot.y, along.y)] {
+        if step == 0.0 {
+            if place.abs() > 1.0 {
+                return None;
+            }
+            continue;
+        }
+        let ends = [(-1.0 - place) / step, (1.0 - place) / step];
+        from = from.max(ends[0].min(ends[1]));
+        to = to.min(ends[0].max(ends[1]));
+    }
+    (from < to).then(|| vec![foot + along * from, foot + along * to])
+}
+
+/// Rows and columns in which a part of the picture is looked for.
+const LOOKS: usize = 24;
+
+/// Straight pieces that make a circle round.
+const ROUND: usize = 96;
+
 /// How near to a curtain's edge it is taken by, in half heights of the picture.
 const GRIP: f64 = 0.06;
 
@@ -171,6 +210,28 @@ impl Comparison {
             }
             CompareMode::Loupe => Part::loupe(true, self, aspect).shows(ndc, aspect),
             _ => false,
+        }
+    }
+
+    /// Where members that have parts of a picture of `aspect` meet: lines through places of it, of a
+    /// curtain straight ones, of a loupe a closed one around it.
+    pub fn edges(&self, aspect: f64) -> Vec<Vec<DVec2>> {
+        match self.mode {
+            CompareMode::Curtain => {
+                let (across, reach) = across(self.angle.radians(), aspect);
+                let count = self.of.len();
+                let line = |k| straight(across, edge(k, count, self.at, reach));
+                (1..count).filter_map(line).collect()
+            }
+            CompareMode::Loupe => {
+                let [x, y, radius, _] = Part::loupe(true, self, aspect).circle.to_array();
+                let place = |k: usize| {
+                    let angle = std::f64::consts::TAU * k as f64 / ROUND as f64;
+                    DVec2::new(x + radius * angle.cos() / aspect, y + radius * angle.sin())
+                };
+                vec![(0..=ROUND).map(place).collect()]
+            }
+            _ => Vec::new(),
         }
     }
 
@@ -342,6 +403,69 @@ mod tests {
                 assert_eq!(seen.count(), 1, "{place}");
             }
         }
+    }
+
+    #[test]
+    fn members_meet_where_one_ends_and_the_next_begins() {
+        const NEAR: f64 = 1e-6;
+        let curtain = Comparison {
+            at: 0.6,
+            angle: Degrees(25.0),
+            ..Comparison::new(CompareMode::Curtain, vec![Member::State(0); 3])
+        };
+        let loupe = Comparison::new(CompareMode::Loupe, vec![Member::State(0); 2]);
+        for comparison in [curtain, loupe] {
+            let aspect = 1.6;
+            let parts: Vec<Part> = match comparison.mode {
+                CompareMode::Curtain => {
+                    let angle = comparison.angle.radians();
+                    let band = |k| Part::band(k, 3, comparison.at, angle, aspect);
+                    (0..3).map(band).collect()
+                }
+                _ => [false, true]
+                    .map(|inside| Part::loupe(inside, &comparison, aspect))
+                    .into(),
+            };
+            let edges = comparison.edges(aspect);
+            assert_eq!(edges.len(), parts.len() - 1);
+            for pair in edges.iter().flat_map(|edge| edge.windows(2)) {
+                let [from, to] = [pair[0], pair[1]];
+                assert!(from.abs().max_element() <= 1.0 + NEAR, "{from}");
+                let beside = (to - from).perp().normalize() * 1e-3;
+                let whose = |at: DVec2| parts.iter().position(|part| part.shows(at, aspect));
+                let [left, right] = [from + beside, from - beside].map(whose);
+                assert!(left != right, "{from}");
+            }
+        }
+        let aside = Comparison::new(CompareMode::SideBySide, vec![Member::State(0); 2]);
+        assert!(aside.edges(1.6).is_empty());
+    }
+
+    #[test]
+    fn a_name_lies_on_its_member() {
+        let names = |parts: &[Part]| -> Vec<DVec2> {
+            let place = |part: &Part| part.top(1.6).expect("a place");
+            parts.iter().map(place).collect()
+        };
+        let cells: Vec<Part> = (0..4).map(|k| Part::cell(k, 4)).collect();
+        for (part, at) in cells.iter().zip(names(&cells)) {
+            assert!(part.shows(at, 1.6), "{at}");
+        }
+        // Not where the loupe is.
+        let comparison = Comparison {
+            centre: DVec2::new(0.5, 0.1),
+            radius: 0.3,
+            ..Comparison::new(CompareMode::Loupe, Vec::new())
+        };
+        let loupe = [false, true].map(|inside| Part::loupe(inside, &comparison, 1.6));
+        let [outside, inside] = names(&loupe)[..] else {
+            panic!("two names")
+        };
+        assert!(
+            inside.x.abs() < 0.1 && outside.x.abs() > 0.5,
+            "{inside} {outside}"
+        );
+        assert_eq!(Part::NOTHING.top(1.6), None);
     }
 
     #[test]

@@ -251,7 +251,7 @@ fn hotspot_lines(shown: &Shown, hotspot: &Hotspot) -> Vec<String> {
 }
 
 /// What a member of a comparison is called.
-fn name(shown: &Shown, member: Member) -> String {
+pub(super) fn name(shown: &Shown, member: Member) -> String {
     let drawing = shown.exhibit.drawing_of(&shown.scene);
     let (title, id) = match member {
         Member::State(state) => (&drawing.states[state].title, &drawing.states[state].id),

@@ -1,7 +1,19 @@
-//! What a hand does with a comparison: which one is shown, and how its curtain, loupe and shares
-//! are moved.
+//! What a hand does with a comparison: which one is shown, how its curtain, loupe and shares are moved,
+//! and what is drawn where its members meet.
 
-use crate::manifest::exhibit::{CompareMode, Comparison, Exhibit, Member, Scene};
+use bevy::prelude::*;
+
+use super::{
+    caption::{self, Texts},
+    marks::{self, Ink, Mark, Marks},
+};
+use crate::{
+    manifest::{
+        comparison::Part,
+        exhibit::{CompareMode, Comparison, Exhibit, Member, Scene},
+    },
+    stage::Shown,
+};
 
 /// In the order in which a key goes through them.
 const MODES: [CompareMode; 7] = [
@@ -112,6 +124,38 @@ pub fn turn(comparison: &mut Comparison, by: f64) {
 /// The next of those that take turns is seen.
 pub fn take_turns(comparison: &mut Comparison) {
     comparison.turn = (comparison.turn + 1) % comparison.of.len().max(1);
+}
+
+/// Lays edges and names over members that have parts of the picture, in a window only.
+pub fn lay(
+    (shown, texts): (Res<Shown>, Res<Texts>),
+    windows: Query<&Window>,
+    mut marks: ResMut<Marks>,
+) {
+    let Ok(window) = windows.single() else {
+        return;
+    };
+    let mut wanted = Vec::new();
+    if let Some(comparison) = shown.scene.compare.as_ref().filter(|c| !c.mode.combines()) {
+        let picture = (shown.aspect, window.size());
+        for edge in comparison.edges(shown.aspect) {
+            wanted.extend(marks::lines(&edge, false, &Part::WHOLE, picture, Ink::Edge));
+        }
+        let parts = shown.exhibit.parts(&shown.scene, shown.aspect);
+        for (member, (_, part)) in comparison.of.iter().zip(parts) {
+            // They come and go with the caption.
+            if let Some(at) = part.top(shown.aspect).filter(|_| texts.caption) {
+                wanted.push(Mark::Words {
+                    at: marks::px(at, window.size()),
+                    text: caption::name(&shown, *member),
+                    is_centred: true,
+                });
+            }
+        }
+    }
+    if marks.compared != wanted {
+        marks.compared = wanted;
+    }
 }
 
 /// For the caption.

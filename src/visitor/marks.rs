@@ -44,6 +44,8 @@ pub enum Ink {
     Open,
     /// Of what is measured.
     Measured,
+    /// Thin, where members of a comparison meet.
+    Edge,
 }
 
 impl Ink {
@@ -52,12 +54,13 @@ impl Ink {
             Self::Quiet => 3.0,
             Self::Open => 5.0,
             Self::Measured => 3.5,
+            Self::Edge => 3.0,
         }
     }
 
     fn colour(self) -> Color {
         match self {
-            Self::Quiet => Color::srgb(0.97, 0.96, 0.92),
+            Self::Quiet | Self::Edge => Color::srgb(0.97, 0.96, 0.92),
             Self::Open => Color::srgb(1.0, 0.72, 0.1),
             Self::Measured => Color::srgb(0.45, 0.85, 1.0),
         }
@@ -76,16 +79,18 @@ pub enum Mark {
         middle: Vec2,
         ink: Ink,
     },
-    /// Beside a place.
+    /// Beside a place, or above its middle.
     Words {
         at: Vec2,
         text: String,
+        is_centred: bool,
     },
 }
 
 /// All that lies over the picture, by whose it is.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct Marks {
+    pub compared: Vec<Mark>,
     pub hotspots: Vec<Mark>,
     pub measured: Vec<Mark>,
     pub pointer: Vec<Mark>,
@@ -335,23 +340,30 @@ pub fn draw(
     }
     let size = text_size(text.height) * WORDS;
     let all = marks
-        .hotspots
+        .compared
         .iter()
+        .chain(&marks.hotspots)
         .chain(&marks.measured)
         .chain(&marks.pointer);
     for mark in all {
         let mut spawned = match mark {
             Mark::Line { from, to, ink } => commands.spawn(stroke(*from, *to, *ink)),
             Mark::Ring { middle, ink } => commands.spawn(ring(*middle, *ink)),
-            Mark::Words { at, text } => {
+            Mark::Words {
+                at,
+                text,
+                is_centred,
+            } => {
                 let node = Node {
                     position_type: PositionType::Absolute,
-                    left: Val::Px(at.x + size),
+                    left: Val::Px(if *is_centred { at.x } else { at.x + size }),
                     top: Val::Px(at.y - size * 0.7),
                     padding: UiRect::axes(Val::Px(size * 0.4), Val::Px(size * 0.15)),
                     ..default()
                 };
-                let mut words = commands.spawn((node, BackgroundColor(DARK)));
+                let across = if *is_centred { -50.0 } else { 0.0 };
+                let aside = UiTransform::from_translation(Val2::percent(across, 0.0));
+                let mut words = commands.spawn((node, aside, BackgroundColor(DARK)));
                 words.with_child(line(text.clone(), &face.0, size));
                 words
             }

@@ -294,6 +294,7 @@ pub fn lay(
                 wanted.push(Mark::Words {
                     at: marks::px(at, window.size()),
                     text: laid.label(),
+                    is_centred: false,
                 });
             }
         }

@@ -29,6 +29,7 @@ use wgpu::DeviceType;
 use super::{
     NoDisplay, ShowOptions, board,
     caption::{self, Texts},
+    comparing,
     export::{self, Exports},
     foresight::{Foresight, Observed, foresee},
     hand::{Hand, Picture, Retreat},
@@ -150,6 +151,7 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
                     fall_back,
                     foresee,
                     marks::learn,
+                    comparing::lay,
                     hotspots::lay,
                     tools::hear,
                     tools::point,
