@@ -163,8 +163,8 @@ fn every_key_arrives() {
     assert_eq!(
         compare.of,
         [
-            Member::State(0),
-            Member::State(1),
+            Member::State(Some(0)),
+            Member::State(Some(1)),
             Member::Side(SideName::Verso),
             Member::Overlay(0),
             Member::Drawing(1)
@@ -529,9 +529,30 @@ fn control_points_beside_the_picture_or_the_sheet_are_warned_of() {
 }
 
 #[test]
+fn a_state_is_compared_with_none() {
+    let compared = |member: &str| {
+        let exhibit = read(&format!(
+            "{SMALL}[[drawing.state]]\nid = \"before\"\nrecto.albedo = \"grey.png\"\n\
+             [[scene]]\nid = \"view\"\nstate = \"before\"\n\
+             compare = {{ mode = \"blend\", of = [\"state:before\", \"{member}\"] }}\n"
+        ));
+        let scene = &exhibit.scenes[0];
+        let states: Vec<_> = exhibit.members(scene).iter().map(|m| m.state).collect();
+        (scene.compare.as_ref().unwrap().of.clone(), states)
+    };
+    let (of, states) = compared("state:none");
+    assert_eq!(of, [Member::State(Some(0)), Member::State(None)]);
+    assert_eq!(states, [Some(0), None]);
+    // Another member stays in the scene's own state.
+    assert_eq!(compared("side:recto").1, [Some(0), Some(0)]);
+}
+
+#[test]
 fn a_stack_is_its_bands_and_what_is_made_of_them() {
     // small.png has half as many pixels each way.
-    let corners = CORNERS.replace("[20,", "[10,").replace(" 10], sheet", " 5], sheet");
+    let corners = CORNERS
+        .replace("[20,", "[10,")
+        .replace(" 10], sheet", " 5], sheet");
     let exhibit = read(&format!(
         "{SMALL}[[drawing.overlay]]\nid = \"map\"\nfile = \"recto.png\"\nkind = \"picture\"\n\
          [[drawing.stack]]\nid = \"light\"\ntitle = {{ en = \"Light\", it = \"Luce\" }}\n\

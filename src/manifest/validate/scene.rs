@@ -13,6 +13,7 @@ use super::{
             SideName, Tour,
         },
         fault::{did_you_mean, quote, quoted_list},
+        overrides::NO_STATE,
         raw::{
             RawManifest,
             scene::{
@@ -22,7 +23,7 @@ use super::{
         },
     },
     Validator,
-    drawing::{DrawingFacts, NO_STATE},
+    drawing::DrawingFacts,
     lamp::DAYLIGHT_K,
     names::Names,
 };
@@ -348,7 +349,15 @@ impl Validator<'_, '_> {
         let mut complete = !list.has_holes();
         for (i, name) in list.iter() {
             match chosen(legend, name.as_str()) {
-                Ok(entry) => drop(indices.insert(entry)),
+                Ok(entry) if indices.insert(entry) => {}
+                Ok(_) => {
+                    let words = Words::new(
+                        format!("the category {} a second time", quote(name.as_str())),
+                        "each category once",
+                        "remove one of the two",
+                    );
+                    self.report.fault(&trail.index(i), words);
+                }
                 Err(words) => {
                     self.report.fault(&trail.index(i), words);
                     complete = false;
@@ -383,13 +392,8 @@ impl Validator<'_, '_> {
             }
             of.push(member);
         }
-        let mode = raw.mode;
-        if let Some(allowed) = mode.allowed_instead_of(of.len()).filter(|_| complete) {
-            let words = Words::new(
-                format!("{} members", of.len()),
-                allowed,
-                "remove some, or choose another mode",
-            );
+        if let Some((found, allowed)) = raw.mode.refuses(&of).filter(|_| complete) {
+            let words = Words::new(found, allowed, "change them, or choose another mode");
             self.report.fault(&trail.key("of"), words);
             return None;
         }
@@ -405,7 +409,11 @@ impl Validator<'_, '_> {
     ) -> Option<Member> {
         let (kind, id) = text.split_once(':')?;
         match kind {
-            "state" => self.resolve(id, &facts.states, trail).map(Member::State),
+            "state" if id == NO_STATE => Some(Member::State(None)),
+            "state" => {
+                let state = self.resolve(id, &facts.states, trail)?;
+                Some(Member::State(Some(state)))
+            }
             // What can be shown of a stack lies over the sheet as overlays do.
             "overlay" | "band" => self
                 .resolve(id, &facts.overlays, trail)
