@@ -1,5 +1,7 @@
 //! What lies over a side in a scene, and how its files become one picture.
 
+use std::path::Path;
+
 use super::exhibit::{
     Band, BandMix, BandView, Drawing, LegendEntry, Overlay, OverlayKind, Scene, Stack, Wording,
 };
@@ -66,6 +68,20 @@ impl Overlay {
                     }
                 }
             }
+        }
+    }
+}
+
+impl Overlay {
+    /// Every file that it is made of.
+    pub fn files(&self) -> Vec<&Path> {
+        match &self.kind {
+            OverlayKind::Bands(view) => view
+                .bands
+                .iter()
+                .map(|b| b.map.file.path.as_path())
+                .collect(),
+            _ => vec![&self.file.path],
         }
     }
 }
