@@ -199,6 +199,7 @@ impl Asked {
             if let Some([width, height]) = arguments.px {
                 // As recto render does.
                 let aspect = f64::from(width) / f64::from(height);
+                let aspect = exhibit.own_aspect(&scene, aspect);
                 scene.camera = scene.camera.fitted(sheet, aspect);
             }
             let state = arguments

@@ -383,7 +383,8 @@ fn scenes(
         let (changed, mut scene) = overrides.apply(exhibit, size[0])?;
         exhibit = changed;
         let sheet = exhibit.drawing_of(&scene).size_mm;
-        scene.camera = scene.camera.fitted(sheet, aspect(size));
+        let aspect = exhibit.own_aspect(&scene, aspect(size));
+        scene.camera = scene.camera.fitted(sheet, aspect);
         scenes.push(scene);
     }
     Ok((exhibit, scenes))

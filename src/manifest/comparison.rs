@@ -393,6 +393,15 @@ impl Exhibit {
         members.map(member).collect()
     }
 
+    /// Width over height of what a scene's camera fills in a picture of `aspect`: of one of those beside
+    /// each other its cell.
+    pub fn own_aspect(&self, scene: &Scene, aspect: f64) -> f64 {
+        let parts = self.parts(scene, aspect);
+        parts
+            .first()
+            .map_or(aspect, |(_, part)| part.aspect(aspect))
+    }
+
     /// All that a scene shows, as scenes without comparisons: its members, or itself.
     pub fn each_alone(&self, scene: &Scene) -> Vec<Scene> {
         match scene.compare {

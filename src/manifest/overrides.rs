@@ -15,9 +15,10 @@ use super::{
         Camera, Drawing, Enhancement, Exhibit, Lamp, LegendEntry, MAX_LAMPS, MAX_OVERLAYS, Member,
         OverlayKind, Scene, SideName,
     },
-    frames, one, quote, quoted_list,
+    frames, one,
+    overlay::chosen,
+    quote, quoted_list,
     raw::{RawCamera, RawCompare, RawEnhance, RawShownOverlay},
-    validate::chosen,
 };
 use crate::units::Degrees;
 use spec::{decode, fault, parts, table, unreadable, validated, value};
@@ -374,20 +375,11 @@ fn shown_overlay(
     };
     let mut faults = Vec::new();
     let categories = shown.categories.map(|list| {
-        let mut indices = Vec::new();
-        for (_, name) in list.iter() {
-            match chosen(legend, name.as_str()) {
-                Ok(entry) if indices.contains(&entry) => faults.push(fault(
-                    option,
-                    format!("the category {} a second time", quote(name.as_str())),
-                    "each category once",
-                    "remove one of the two",
-                )),
-                Ok(entry) => indices.push(entry),
-                Err(words) => faults.push(fault(option, words.found, words.allowed, words.remedy)),
-            }
-        }
-        indices.sort_unstable();
+        let (indices, found) = chosen(legend, list.iter().map(|(i, name)| (i, name.as_str())));
+        let found = found.into_iter();
+        faults.extend(
+            found.map(|(_, words)| fault(option, words.found, words.allowed, words.remedy)),
+        );
         indices
     });
     if faults.is_empty() {

@@ -90,7 +90,8 @@ fn a_comparison_s_faults_are_all_named_and_nothing_is_written() {
     assert!(ends("curtain:side:recto,side:verso,at=2", 2).contains("0 to 1"));
     let stderr = ends("loupe:side:recto,side:verso,radius=0,at=0.5", 2);
     assert!(
-        stderr.contains("from 0.01 to 1") && stderr.contains("mode \"loupe\" does not use"),
+        stderr.contains("from 0.01 to 1")
+            && stderr.contains("a key that mode \"loupe\" does not use"),
         "{stderr}"
     );
     assert!(!out.exists());

@@ -89,6 +89,12 @@ fn a_slanted_view_says_where_its_bar_holds() {
         let scale = &sidecar(&out)["scale"];
         assert_eq!(scale["holds"], holds, "{more:?}");
         assert_eq!(scale["outside_the_loupe"], more[0].contains("loupe"));
+        if more[0].contains("side-by-side") {
+            // The whole sheet of 100 mm, and 4 % of it on either side, fills each half's width.
+            let expected = 108.0 / f64::from(SIZE[0] / 2);
+            let found = scale["mm_per_px"].as_f64().unwrap();
+            assert!((found - expected).abs() < 1e-9, "{found}");
+        }
         let [mm, px, each] =
             ["bar_mm", "bar_px", "mm_per_px"].map(|key| scale[key].as_f64().unwrap());
         assert!((mm - px * each).abs() < 1e-9 && (bar_px(&out) - px).abs() < 1.0);
@@ -195,17 +201,23 @@ fn the_sidecar_has_every_file_that_decides_the_picture() {
         files
     };
     // The light of every scene has a spectrum from a file.
-    assert_eq!(listed(&["--scene=now"]), ["even.csv", "sheet.png"]);
     assert_eq!(
-        listed(&["--scene=now", "--tier=study"]),
-        ["even.csv", "over.png", "sheet.png", "under.png"]
+        listed(&["--scene=now", "--tier=lambert"]),
+        ["even.csv", "sheet.png"]
     );
+    // Media decide how rough the surface is, and of what it is.
+    for tier in ["--tier=gallery", "--tier=study"] {
+        assert_eq!(
+            listed(&["--scene=now", tier]),
+            ["even.csv", "over.png", "sheet.png", "under.png"]
+        );
+    }
     assert_eq!(
-        listed(&["--scene=both"]),
+        listed(&["--scene=both", "--tier=lambert"]),
         ["before.png", "even.csv", "sheet.png"]
     );
     assert_eq!(
-        listed(&["--scene=ink"]),
+        listed(&["--scene=ink", "--tier=lambert"]),
         ["550.png", "850.png", "even.csv", "sheet.png"]
     );
     // The scene is told as the manifest would have it.

@@ -5,7 +5,7 @@ use std::fs;
 use image::GenericImageView;
 use recto::{develop::Print, maps::encode};
 
-use super::{Sheet, code, files, stdout};
+use super::{Sheet, code, files, recto, stdout};
 
 #[test]
 fn without_a_driver_the_program_ends_with_3_and_says_what_to_install() {

@@ -27,6 +27,10 @@ pub enum Rule {
 
 impl Rule {
     pub(super) fn check(self, node: &Node<'_>, report: &mut Report<'_>) {
+        let trail = match self {
+            Self::OnlyWith(key, ..) => node.trail.key(key),
+            _ => node.trail.clone(),
+        };
         let present = |keys: &[&'static str]| -> Vec<&'static str> {
             keys.iter()
                 .copied()
@@ -56,16 +60,16 @@ impl Rule {
             Self::OnlyWith(key, other, words) if node.get(key).is_some() => {
                 match node.get(other).and_then(|node| node.text()) {
                     Some(word) if !words.contains(&word) => (
-                        format!("\"{key}\", which {other} {} does not use", quote(word)),
+                        format!("a key that {other} {} does not use", quote(word)),
                         format!("it with {}", quoted_list(words.iter().copied())),
-                        format!("remove \"{key}\""),
+                        "remove it".to_owned(),
                     ),
                     _ => return,
                 }
             }
             _ => return,
         };
-        report.fault(&node.trail, Words::new(found, allowed, remedy));
+        report.fault(&trail, Words::new(found, allowed, remedy));
     }
 
     /// The rule as a JSON Schema of any draft.
@@ -83,7 +87,10 @@ impl Rule {
             }
             Self::Needs(key, other) => serde_json::json!({ "anyOf": [lacks(key), has(other)] }),
             Self::OnlyWith(key, other, words) => serde_json::json!({
-                "anyOf": [lacks(key), { "properties": { other: { "enum": words } } }],
+                "anyOf": [lacks(key), { "properties": { other: {
+                    "enum": words,
+                    "description": format!("What goes with {key}."),
+                } } }],
             }),
         }
     }

@@ -73,6 +73,10 @@ pub fn value(text: &str) -> Value {
     let numbers: Option<Vec<f64>> = text.split('x').map(|part| part.parse().ok()).collect();
     match numbers {
         Some(numbers) if numbers.len() > 1 => numbers.into(),
+        // A fraction as people write it, which TOML wants a 0 before.
+        _ if text.trim_start_matches(['-', '+']).starts_with('.') => text
+            .parse::<f64>()
+            .map_or_else(|_| Value::from(text), Value::from),
         _ => text.parse().unwrap_or_else(|_| Value::from(text)),
     }
 }

@@ -166,7 +166,7 @@ impl Validator<'_, '_> {
         let error = match Fitted::new(&pairs, placement.fit, pixels, sheet_mm) {
             Ok(fitted) => {
                 self.warn_of_points_beside(&pairs, sheet_mm, vector(pixels), &trail);
-                self.warn_of_points_at_odds(&fitted, sheet_mm, pixels, &trail);
+                self.warn_of_points_at_odds(&fitted, &pairs, sheet_mm, &trail);
                 return Some(fitted);
             }
             Err(error) => error,
@@ -261,14 +261,11 @@ impl Validator<'_, '_> {
     fn warn_of_points_at_odds(
         &mut self,
         fitted: &Fitted,
+        points: &[(DVec2, DVec2)],
         sheet_mm: DVec2,
-        pixels: [u32; 2],
         trail: &Trail,
     ) {
-        let size = fitted.warp.as_ref().map_or(pixels, |warp| warp.size());
-        let px2_per_mm2 =
-            fitted.uv_from_side.matrix2.determinant().abs() * vector(size).element_product();
-        let read_mm = READ_MM.max(READ_PX / px2_per_mm2.sqrt());
+        let read_mm = READ_MM.max(READ_PX * mm_per_px(points));
         if let Some(AtOdds { points, usual_mm }) = fitted.at_odds(read_mm) {
             let (worst, mm) = points[0];
             let which: Vec<usize> = points.iter().map(|(i, _)| *i).collect();
@@ -346,6 +343,19 @@ impl Validator<'_, '_> {
             self.report.fault(&placement.trail.key("register"), words);
         }
     }
+}
+
+/// How large a pixel of a picture is on the sheet, by how far its control points lie apart.
+fn mm_per_px(points: &[(DVec2, DVec2)]) -> f64 {
+    let spread = |of: fn(&(DVec2, DVec2)) -> DVec2| {
+        let mean = points.iter().map(of).sum::<DVec2>() / points.len() as f64;
+        points
+            .iter()
+            .map(|point| (of(point) - mean).length_squared())
+            .sum::<f64>()
+            .sqrt()
+    };
+    spread(|point| point.1) / spread(|point| point.0)
 }
 
 /// `point 3`, or `points 3, 5 and 8 more, the first`, of indices from 0.
