@@ -427,7 +427,7 @@ fn readings_go_to_standard_output_as_words_as_json_and_as_csv() {
             .map(|part| part.matches(',').count())
             .sum::<usize>()
     };
-    assert!(rows.lines().all(|row| columns(row) == 10), "{rows}");
+    assert!(rows.lines().all(|row| columns(row) == 13), "{rows}");
 
     let output = measure(&sheet.exhibit(), &[&arguments[..7], &["--json"]].concat());
     code(&output, 0);

@@ -477,7 +477,7 @@ fn control_points_at_odds_are_warned_of_and_small_errors_are_not() {
         let place = "drawing[0].recto.control_points[6]: found point 7 ";
         assert!(warning.contains(place), "{warning}");
         assert!(
-            warning.contains(" mm from where the others put it; allowed: about ")
+            warning.contains(" mm from where the others put it; allowed: about 0.")
                 && warning.contains("correct its picture or sheet_mm, or remove it"),
             "{warning}"
         );

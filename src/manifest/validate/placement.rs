@@ -166,7 +166,7 @@ impl Validator<'_, '_> {
         let error = match Fitted::new(&pairs, placement.fit, pixels, sheet_mm) {
             Ok(fitted) => {
                 self.warn_of_points_beside(&pairs, sheet_mm, vector(pixels), &trail);
-                self.warn_of_points_at_odds(&fitted, &pairs, sheet_mm, &trail);
+                self.warn_of_points_at_odds(&fitted, &pairs, pixels, sheet_mm, &trail);
                 return Some(fitted);
             }
             Err(error) => error,
@@ -262,11 +262,13 @@ impl Validator<'_, '_> {
         &mut self,
         fitted: &Fitted,
         points: &[(DVec2, DVec2)],
+        pixels: [u32; 2],
         sheet_mm: DVec2,
         trail: &Trail,
     ) {
         let read_mm = READ_MM.max(READ_PX * mm_per_px(points));
-        if let Some(AtOdds { points, usual_mm }) = fitted.at_odds(read_mm) {
+        let at_odds = fitted.at_odds(points, pixels, sheet_mm, read_mm);
+        if let Some(AtOdds { points, usual_mm }) = at_odds {
             let (worst, mm) = points[0];
             let which: Vec<usize> = points.iter().map(|(i, _)| *i).collect();
             let words = Words::new(

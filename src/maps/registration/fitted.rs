@@ -22,6 +22,8 @@ const FLAT: f64 = 0.01;
 /// A point is at odds with the others whose residual is this many times the middle one: of a
 /// thousand readings with normal errors the largest is at a little over three times it.
 const AT_ODDS: f64 = 5.0;
+/// And may be one where it is this many times the middle one of all, which it draws up itself.
+const SUSPECT: f64 = 2.0;
 
 /// What control points do to a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -100,7 +102,7 @@ pub struct Residual {
 pub struct AtOdds {
     /// Which, counted from 0, and how far it lies from where the others put it, in mm.
     pub points: Vec<(usize, f64)>,
-    /// The middle one of all such distances, in mm.
+    /// The middle one of such distances of the others, in mm.
     pub usual_mm: f64,
 }
 
@@ -142,14 +144,9 @@ impl Fitted {
         let fit = fit.unwrap_or(FitKind::usual(points.len()));
         refuse_doubled(points)?;
         let uv_from_px = DAffine2::from_scale(vector(pixels).recip());
-        let straight = |points: &[ControlPoint]| match fit {
-            FitKind::Shift => shift(points, pixels, sheet_mm),
-            FitKind::Similarity => similarity(points),
-            FitKind::Affine | FitKind::ThinPlate => affine(points),
-        };
         if fit == FitKind::ThinPlate {
             let plate = Plate::anywhere(points, 0.0)?;
-            if straight(points)?.px_from_mm.matrix2.determinant() < 0.0 {
+            if affine(points)?.px_from_mm.matrix2.determinant() < 0.0 {
                 return Err(RegistrationError::Mirrored);
             }
             let residual = |(px, mm): &ControlPoint| {
@@ -167,29 +164,15 @@ impl Fitted {
                 warp: Some(Arc::new(warp)),
             });
         }
-        let all = straight(points)?;
+        let all = straight(fit, points, pixels, sheet_mm)?;
         refuse_flat_and_mirrored(points, all.px_from_mm.matrix2)?;
         let uv_from_side = uv_from_px * all.px_from_mm;
         if is_beside(uv_from_side, sheet_mm) {
             return Err(RegistrationError::Beside);
         }
-        let left_out = |i: usize| {
-            let others: Vec<ControlPoint> = points
-                .iter()
-                .enumerate()
-                .filter_map(|(k, point)| (k != i).then_some(*point))
-                .collect();
-            // As few points as the fit takes agree with it whatever they are.
-            if points.len() <= fit.least_points() {
-                return None;
-            }
-            let mm_from_px = straight(&others).ok()?.px_from_mm.inverse();
-            let (px, mm) = points[i];
-            Some(mm_from_px.transform_point2(px).distance(mm))
-        };
         Ok(Self {
             fit,
-            left_out_mm: (0..points.len()).map(left_out).collect(),
+            left_out_mm: left_out(fit, points, pixels, sheet_mm),
             uv_from_side,
             residuals_mm: all.residuals_mm,
             warp: None,
@@ -206,22 +189,94 @@ impl Fitted {
         Residual::of(self.left_out_mm.iter().copied())
     }
 
-    /// The points that are more than `least_mm` from where the others put them, and far more than is
-    /// usual among them; `None` where there are none, or too few to know what is usual. Those less than
-    /// half as far off as the farthest are left out: they may only be its neighbours.
-    pub fn at_odds(&self, least_mm: f64) -> Option<AtOdds> {
-        let left_out = || {
-            let all = self.left_out_mm.iter().enumerate();
-            all.filter_map(|(i, mm)| Some((i, (*mm)?)))
-        };
-        let mut sorted: Vec<f64> = left_out().map(|(_, mm)| mm).collect();
-        sorted.sort_by(f64::total_cmp);
-        let usual_mm = *sorted.get(sorted.len() / 2)?;
-        let least = (AT_ODDS * usual_mm).max(least_mm).max(sorted.last()? / 2.0);
-        let mut points: Vec<(usize, f64)> = left_out().filter(|(_, mm)| *mm > least).collect();
-        points.sort_by(|a, b| b.1.total_cmp(&a.1));
-        (!points.is_empty()).then_some(AtOdds { points, usual_mm })
+    /// The points, of those that it was fitted to, that are more than `least_mm` from where the others
+    /// put them, and far more than is usual among the others; `None` where there are none, or too few
+    /// to know what is usual. One after the other, the farthest first, as each of them draws all others
+    /// away from where they are.
+    pub fn at_odds(
+        &self,
+        points: &[ControlPoint],
+        pixels: [u32; 2],
+        sheet_mm: DVec2,
+        least_mm: f64,
+    ) -> Option<AtOdds> {
+        let mut rest: Vec<usize> = (0..points.len()).collect();
+        let mut of_rest = self.left_out_mm.clone();
+        let mut found: Option<AtOdds> = None;
+        // Where more contradict each other, none of them is what is usual.
+        for _ in 0..points.len() / 4 {
+            let Some(worst) = Residual::of(of_rest.iter().copied()) else {
+                break;
+            };
+            let mm = worst.largest_mm;
+            if mm <= least_mm || mm <= SUSPECT * median(&of_rest)? {
+                break;
+            }
+            let point = rest.remove(worst.at_point - 1);
+            let others: Vec<ControlPoint> = rest.iter().map(|i| points[*i]).collect();
+            of_rest = left_out(self.fit, &others, pixels, sheet_mm);
+            let Some(usual_mm) = median(&of_rest).filter(|usual| mm > AT_ODDS * usual) else {
+                break;
+            };
+            let mut points = found.map_or_else(Vec::new, |found| found.points);
+            points.push((point, mm));
+            found = Some(AtOdds { points, usual_mm });
+        }
+        found
     }
+}
+
+/// The middle one of those that are known.
+fn median(mm: &[Option<f64>]) -> Option<f64> {
+    let mut known: Vec<f64> = mm.iter().copied().flatten().collect();
+    known.sort_by(f64::total_cmp);
+    known.get(known.len() / 2).copied()
+}
+
+fn straight(
+    fit: FitKind,
+    points: &[ControlPoint],
+    pixels: [u32; 2],
+    sheet_mm: DVec2,
+) -> Result<Fit, RegistrationError> {
+    match fit {
+        FitKind::Shift => shift(points, pixels, sheet_mm),
+        FitKind::Similarity => similarity(points),
+        FitKind::Affine | FitKind::ThinPlate => affine(points),
+    }
+}
+
+/// How far each point lies from where the others alone put it, in mm.
+fn left_out(
+    fit: FitKind,
+    points: &[ControlPoint],
+    pixels: [u32; 2],
+    sheet_mm: DVec2,
+) -> Vec<Option<f64>> {
+    // As few points as the fit takes agree with it whatever they are.
+    if points.len() <= fit.least_points() {
+        return vec![None; points.len()];
+    }
+    if fit == FitKind::ThinPlate {
+        let plate = Plate::anywhere(points, 0.0);
+        return plate.map_or_else(
+            |_| vec![None; points.len()],
+            |plate| plate.residuals_mm().to_vec(),
+        );
+    }
+    let one = |i: usize| {
+        let mut others = points.to_vec();
+        let (px, mm) = others.remove(i);
+        let fitted = straight(fit, &others, pixels, sheet_mm).ok()?;
+        Some(
+            fitted
+                .px_from_mm
+                .inverse()
+                .transform_point2(px)
+                .distance(mm),
+        )
+    };
+    (0..points.len()).map(one).collect()
 }
 
 /// Whether a picture that lies so covers nothing of a sheet. Both are convex: an edge of one of them
