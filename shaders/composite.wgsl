@@ -27,6 +27,8 @@ struct Composite {
     // 1 where differences are colours, 0 where they are numbers.
     coded: u32,
     sharpen: f32,
+    // Light of the table, in every channel.
+    table: f32,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> composite: Composite;
@@ -140,8 +142,16 @@ fn colour_of(share: f32) -> vec3<f32> {
     );
 }
 
-// Light that stands for the difference of two members.
+// Both colours are cleared to the table's, or mixed with nothing of the sheet, exactly.
+fn is_table(light: vec3<f32>) -> bool {
+    return all(abs(light - vec3(composite.table)) <= vec3(1e-6));
+}
+
+// Light that stands for the difference of two members; where neither has sheet, the table.
 fn difference(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    if composite.coded == 1u && is_table(a) && is_table(b) {
+        return vec3(composite.table);
+    }
     var found: f32;
     if composite.mode == DELTA_E {
         // Of what a display shows.

@@ -6,6 +6,8 @@
 mod lobes;
 mod matter;
 
+use std::path::Path;
+
 use glam::DVec2;
 
 use crate::{
@@ -121,6 +123,18 @@ impl MapUse {
             Self::RoughnessOfMatter(stack, _) => &stack.file,
             Self::Matter(stack) | Self::MatterMore(stack) | Self::OtherMatter(stack) => &stack.file,
             Self::Overlay(overlay) => &overlay.file,
+        }
+    }
+
+    /// Every file that it is made of.
+    pub fn files(&self) -> Vec<&Path> {
+        match self {
+            Self::RoughnessOfMatter(stack, _) => stack.files(),
+            Self::Matter(stack) | Self::MatterMore(stack) | Self::OtherMatter(stack) => {
+                stack.files()
+            }
+            Self::Overlay(overlay) => overlay.files(),
+            map => vec![&map.file().path],
         }
     }
 

@@ -95,6 +95,73 @@ overlays = [{ id = "picture", opacity = 0.5 }]
         sheet
     }
 
+    /// The same with a state, media in two layers, a stack of two bands and a lamp with a spectrum
+    /// from a file, in scenes that each need some of it.
+    fn rich() -> Self {
+        let sheet = Self::new();
+        let grey = |name: &str, value: u8| {
+            let pixels = [value; (EDGE * EDGE) as usize];
+            encode::save_png_grey8(&sheet.exhibit().join(name), EDGE, EDGE, &pixels, None).unwrap();
+        };
+        for (name, value) in [("before.png", 90), ("550.png", 51), ("850.png", 204)] {
+            grey(name, value);
+        }
+        for (name, value) in [("under.png", 255), ("over.png", 100)] {
+            grey(name, value);
+        }
+        fs::write(sheet.exhibit().join("even.csv"), "nm,W\n360,2\n800,2\n").unwrap();
+        fs::write(
+            sheet.exhibit().join("exhibit.toml"),
+            r##"
+[[drawing]]
+id = "sheet"
+size_mm = [100, 100]
+recto.albedo = "sheet.png"
+recto.media = [
+    { file = "under.png", weights = ["iron-gall-ink"] },
+    { file = "over.png", weights = ["white-gouache"] },
+]
+verso.albedo = "verso.png"
+
+[[drawing.state]]
+id = "before"
+recto.albedo = "before.png"
+
+[[drawing.stack]]
+id = "light"
+encoding = "linear"
+bands = [{ file = "850.png", wavelength_nm = 850 }, { file = "550.png", wavelength_nm = 550 }]
+difference = [{ id = "ink", of = [850, 550] }]
+
+[[lamp]]
+id = "even"
+kind = "distant"
+lux_at_sheet = 500
+elevation_deg = 45
+azimuth_deg = 135
+spectrum = { file = "even.csv" }
+
+[[scene]]
+id = "now"
+
+[[scene]]
+id = "then"
+state = "before"
+
+[[scene]]
+id = "both"
+compare = { mode = "curtain", of = ["state:before", "state:none"] }
+enhance = { exaggerate = 2, sharpen = 0.5 }
+
+[[scene]]
+id = "ink"
+compare = { mode = "loupe", of = ["side:recto", "band:light/ink"] }
+"##,
+        )
+        .unwrap();
+        sheet
+    }
+
     fn exhibit(&self) -> PathBuf {
         self.root.path().join("exhibit")
     }

@@ -13,7 +13,7 @@ use crate::{
     tradeoff::{
         choice::{self, Costs, LADDER, MARGIN},
         places::{MapFault, Maps},
-        scene::{Sampled, WIDTH_PX, is_flattened},
+        scene::{Seen, WIDTH_PX, is_flattened},
         table::Table,
     },
 };
@@ -117,12 +117,12 @@ impl SceneAccuracy {
         detail: Detail,
         maps: &mut Maps,
     ) -> Result<Self, MapFault> {
-        let sampled = Sampled::new(exhibit, scene, [WIDTH_PX, HEIGHT_PX], maps)?;
+        let seen = Seen::new(exhibit, scene, [WIDTH_PX, HEIGHT_PX], maps)?;
         let (tiers, worths) = match detail {
             Detail::Choice => (&LADDER[..], Vec::new()),
-            Detail::Whole => (&Tier::ALL[..], sampled.worths()),
+            Detail::Whole => (&Tier::ALL[..], seen.worths()),
         };
-        let forecasts = sampled.forecasts(tiers);
+        let forecasts = seen.forecasts(tiers);
         let needs = Needs::of(exhibit, scene, Tier::Study, false);
         let costs = needs
             .sides
@@ -137,7 +137,13 @@ impl SceneAccuracy {
         if !scene.overlays.is_empty() {
             remarks.push("overlays are left aside".to_owned());
         }
-        if sampled.count() == 0 {
+        if scene.compare.is_some() {
+            remarks.push("the worst of the members is taken".to_owned());
+        }
+        if scene.enhance.is_of_picture() {
+            remarks.push("contrast and sharpness are left as they are".to_owned());
+        }
+        if seen.count() == 0 {
             remarks.push("nothing of the sheet is in the picture".to_owned());
         }
         Ok(Self {
@@ -145,7 +151,7 @@ impl SceneAccuracy {
             chosen: tier,
             kept,
             max_delta_e,
-            places: sampled.count(),
+            places: seen.count(),
             tiers: forecasts
                 .iter()
                 .map(|forecast| TierReport {

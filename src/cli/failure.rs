@@ -19,7 +19,8 @@ pub enum Failure {
     Arguments(Box<clap::Error>),
     /// The arguments parse and still cannot be followed.
     Usage(String),
-    /// The manifest or the options about a scene are at fault.
+    /// The manifest or the options about a scene are at fault: wrong usage where the value of an
+    /// option cannot be read at all.
     Faults(Faults),
     /// A file is at fault.
     Input(Box<dyn Error + Send + Sync>),
@@ -53,6 +54,7 @@ impl Failure {
             Self::Closed => 0,
             Self::Ended(code) => *code,
             Self::Arguments(error) => u8::try_from(error.exit_code()).unwrap_or(2),
+            Self::Faults(faults) if faults.iter().any(|fault| fault.unreadable) => 2,
             Self::Faults(_) | Self::Input(_) => 1,
             Self::Usage(_) => 2,
             Self::Device(_) => 3,

@@ -199,6 +199,7 @@ impl Asked {
             if let Some([width, height]) = arguments.px {
                 // As recto render does.
                 let aspect = f64::from(width) / f64::from(height);
+                let aspect = exhibit.own_aspect(&scene, aspect);
                 scene.camera = scene.camera.fitted(sheet, aspect);
             }
             let state = arguments
@@ -267,8 +268,14 @@ struct Spec<'a> {
 
 impl Spec<'_> {
     fn fault(&self, found: String, allowed: &str) -> Vec<Fault> {
-        let remedy = "write it like 20,30:120,30";
-        vec![fault(self.option, found, allowed, remedy)]
+        let remedy = match self.option.starts_with("--probe") {
+            true => "write it like 20,30 or 20,30,2",
+            false => "write it like 20,30:120,30",
+        };
+        vec![Fault {
+            unreadable: true,
+            ..fault(self.option, found, allowed, remedy)
+        }]
     }
 
     /// The numbers of each place, 2 or up to `most`.
@@ -453,6 +460,7 @@ fn fault(
         found: found.into(),
         allowed: allowed.into(),
         remedy: remedy.into(),
+        unreadable: false,
     }
 }
 

@@ -47,7 +47,7 @@ pub struct SceneArguments {
     #[arg(long, value_name = "MODE:A,B")]
     compare: Option<String>,
     /// How much of the light comes through the sheet: 1 is a light table alone, 0 the lamps alone
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_negative_numbers = true)]
     transmitted: Option<f64>,
     /// Shows the sheet other than it is, and says so on the picture: relief_only=true, exaggerate=3,
     /// stretch=[0.2,0.8], sharpen=0.5
@@ -160,6 +160,24 @@ pub fn side() -> impl TypedValueParser<Value = SideName> {
 /// The names of all tiers.
 pub fn tier() -> impl TypedValueParser<Value = Tier> {
     PossibleValuesParser::new(Tier::ALL.map(Tier::name)).try_map(|name| name.parse::<Tier>())
+}
+
+/// From 0 to 1.
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.trim().parse().ok();
+    share
+        .filter(|share| (0.0..=1.0).contains(share))
+        .ok_or_else(|| {
+            "write a number from 0 to 1: 1 for a light table alone, 0 for the lamps alone"
+                .to_owned()
+        })
+}
+
+/// More than nothing, in mm.
+pub fn positive_mm(text: &str) -> Result<f64, String> {
+    let mm = text.trim().parse().ok();
+    mm.filter(|mm: &f64| mm.is_finite() && *mm > 0.0)
+        .ok_or_else(|| "write a number of mm above 0, such as 13".to_owned())
 }
 
 /// `WIDTHxHEIGHT` in pixels.

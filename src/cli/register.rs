@@ -34,7 +34,8 @@ pub struct Arguments {
         value_parser = options::side())]
     side: SideName,
     /// How far from where they are expected places may lie, in mm
-    #[arg(long, value_name = "MM", default_value_t = 13.0)]
+    #[arg(long, value_name = "MM", default_value_t = 13.0, value_parser = options::positive_mm,
+        allow_negative_numbers = true)]
     reach_mm: f64,
 }
 

@@ -126,9 +126,6 @@ impl Pictures {
             // A damaged map of the last scene must be found before the first is written.
             verify(&exhibit, &scenes, tier)?;
         }
-        for sentence in &exhibit.not_shown_yet {
-            output::say(sentence);
-        }
         if all {
             output::can_write_folder(&out)?;
             for scene in &scenes {
@@ -386,7 +383,8 @@ fn scenes(
         let (changed, mut scene) = overrides.apply(exhibit, size[0])?;
         exhibit = changed;
         let sheet = exhibit.drawing_of(&scene).size_mm;
-        scene.camera = scene.camera.fitted(sheet, aspect(size));
+        let aspect = exhibit.own_aspect(&scene, aspect(size));
+        scene.camera = scene.camera.fitted(sheet, aspect);
         scenes.push(scene);
     }
     Ok((exhibit, scenes))
@@ -400,16 +398,17 @@ fn samples(scene: &Scene) -> u16 {
     }
 }
 
-/// Decodes the maps that the scenes need, which finds damaged ones before anything is rendered,
+/// Decodes the maps that the scenes and the members of their comparisons need, which finds damaged ones before anything is rendered,
 /// and says its warnings.
 fn verify(exhibit: &Exhibit, scenes: &[Scene], tier: Tier) -> Result<(), Failure> {
     let needs: Vec<Needs> = scenes
         .iter()
-        .map(|scene| Needs::of(exhibit, scene, tier, false))
+        .flat_map(|scene| exhibit.each_alone(scene))
+        .map(|scene| Needs::of(exhibit, &scene, tier, false))
         .collect();
     let sides = needs.iter().flat_map(|needs| &needs.sides);
     let maps = sides.flat_map(|side| &side.maps);
-    super::warn(&exhibit.verify(maps.map(MapUse::file))?);
+    super::warn(&exhibit.verify_files(maps.flat_map(MapUse::files))?);
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use glam::DVec3;
+use glam::{DAffine2, DVec3};
 use serde::Serialize;
 
 use super::{
@@ -20,11 +20,11 @@ use crate::{
     manifest::{
         Accuracy, Exhibit, Fault, Faults, Registered, Scene, SideName, Source,
         capture::{self, Mask, Photograph},
-        exhibit::LampKind,
+        exhibit::{CompareMode, LampKind},
         lighting::light_table_lux,
     },
     maps::registration::{FitKind, Residual},
-    needs::Needs,
+    needs::{MapUse, Needs, SideNeeds},
     tradeoff::places::Maps,
 };
 
@@ -95,14 +95,25 @@ pub struct SceneReport {
     pub id: String,
     pub drawing: String,
     pub side: SideName,
+    /// What is shown against each other, by the mode; nothing in a scene without a comparison.
+    pub compared: Option<ComparedReport>,
+    /// What is shown other than it is.
+    pub enhanced: Vec<String>,
     pub reasons: Vec<String>,
     pub maps: Vec<MapReport>,
-    /// Bytes of its maps on the graphics device.
+    /// Bytes of its maps on the graphics device, those of all members, each counted once.
     pub gpu_bytes: u64,
     /// The same in a window, where the sheet can be turned over.
     pub gpu_bytes_in_window: u64,
     pub exposure: ExposureReport,
     pub accuracy: SceneAccuracy,
+}
+
+/// A comparison.
+#[derive(Clone, Debug, Serialize)]
+pub struct ComparedReport {
+    pub mode: CompareMode,
+    pub of: Vec<String>,
 }
 
 /// A map that a scene needs.
@@ -220,27 +231,71 @@ impl SceneReport {
         let accuracy = SceneAccuracy::new(exhibit, scene, prices, detail, held)
             .map_err(|fault| exhibit.map_fault(&fault.path, &fault.error))?;
         let tier = accuracy.chosen;
-        let needs = Needs::of(exhibit, scene, tier, false);
-        let maps = needs.sides.iter().flat_map(|side| {
-            side.maps.iter().map(|map| MapReport {
-                side: side.side,
-                role: map.role(),
-                file: relative(exhibit, &map.file().path),
-                size_px: map.file().size,
-                gpu_bytes: map.gpu_bytes(),
-            })
+        let drawing = exhibit.drawing_of(scene);
+        let compared = scene.compare.as_ref().map(|comparison| ComparedReport {
+            mode: comparison.mode,
+            of: comparison
+                .of
+                .iter()
+                .map(|member| exhibit.written_member(drawing, *member))
+                .collect(),
+        });
+        let mut reasons = Vec::new();
+        let (mut maps, mut in_window) = (Vec::new(), Vec::new());
+        for (k, member) in exhibit.each_alone(scene).iter().enumerate() {
+            let needs = Needs::of(exhibit, member, tier, false);
+            distinct(&mut maps, needs.sides);
+            distinct(&mut in_window, Needs::of(exhibit, member, tier, true).sides);
+            let of = compared.as_ref().and_then(|compared| compared.of.get(k));
+            reasons.extend(needs.reasons.into_iter().map(|reason| match of {
+                Some(of) => format!("{of}: {reason}"),
+                None => reason,
+            }));
+        }
+        let bytes = |maps: &[(SideName, MapUse)]| maps.iter().map(|(_, map)| map.gpu_bytes()).sum();
+        let gpu_bytes = bytes(&maps);
+        let maps = maps.into_iter().map(|(side, map)| MapReport {
+            side,
+            role: map.role(),
+            file: relative(exhibit, &map.file().path),
+            size_px: map.file().size,
+            gpu_bytes: map.gpu_bytes(),
         });
         Ok(Self {
             id: scene.id.clone(),
-            drawing: exhibit.drawing_of(scene).id.clone(),
+            drawing: drawing.id.clone(),
             side: scene.side,
+            compared,
+            enhanced: scene.enhance.marks(),
             maps: maps.collect(),
-            gpu_bytes: needs.gpu_bytes(),
-            gpu_bytes_in_window: Needs::of(exhibit, scene, tier, true).gpu_bytes(),
+            gpu_bytes,
+            gpu_bytes_in_window: bytes(&in_window),
             exposure: ExposureReport::new(exhibit, scene),
-            reasons: needs.reasons,
+            reasons,
             accuracy,
         })
+    }
+}
+
+/// Adds those maps of `sides` that are not there yet, wherever they lie on the sheet: they are loaded
+/// once.
+fn distinct(maps: &mut Vec<(SideName, MapUse)>, sides: Vec<SideNeeds>) {
+    let pixels = |map: &MapUse| {
+        let mut map = match map {
+            // Both are pictures of a side.
+            MapUse::OtherAlbedo(colour) => MapUse::Albedo(colour.clone()),
+            map => map.clone(),
+        };
+        map.file_mut().uv_from_side = DAffine2::IDENTITY;
+        map
+    };
+    for side in sides {
+        for map in side.maps {
+            let same = |(_, known): &(SideName, MapUse)| pixels(known) == pixels(&map);
+            if !maps.iter().any(same) {
+                maps.push((side.side, map));
+            }
+        }
     }
 }
 
@@ -463,6 +518,21 @@ impl Display for SceneReport {
             self.drawing,
             self.side.word()
         )?;
+        if let Some(ComparedReport { mode, of }) = &self.compared {
+            write!(
+                f,
+                "\n  {} of {}, whose maps are all loaded",
+                mode.word(),
+                of.join(" and ")
+            )?;
+        }
+        if !self.enhanced.is_empty() {
+            write!(
+                f,
+                "\n  enhanced for the eye, and said so on the picture: {}; what is measured stays as it is",
+                self.enhanced.join("; ")
+            )?;
+        }
         for reason in &self.reasons {
             write!(f, "\n  {reason}")?;
         }

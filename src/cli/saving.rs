@@ -10,7 +10,8 @@ pub fn draft(commission: &Commission, scene: &Scene, id: &str) -> Result<Draft, 
     let mut scene = scene.clone();
     // The whole sheet stays the whole sheet in pictures of another shape.
     let whole = Camera::whole_sheet(sheet);
-    if scene.camera == whole.fitted(sheet, f64::from(size[0]) / f64::from(size[1])) {
+    let aspect = exhibit.own_aspect(&scene, f64::from(size[0]) / f64::from(size[1]));
+    if scene.camera == whole.fitted(sheet, aspect) {
         scene.camera = whole;
     }
     // Words about one view are not about another.

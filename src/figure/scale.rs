@@ -31,7 +31,7 @@ pub enum Holds {
 
 impl Scale {
     /// Of `scene` in a picture of `size` pixels; of a comparison, of its first member. (`scene`'s
-    /// camera is fitted to the picture as a whole already, as [`crate::manifest::Camera::fitted`]
+    /// camera may be fitted to its part of the picture already, as [`crate::manifest::Camera::fitted`]
     /// does.)
     pub fn new(exhibit: &Exhibit, scene: &Scene, size: [u32; 2]) -> Self {
         let [width, height] = size.map(|side| f64::from(side.max(1)));

@@ -3,22 +3,16 @@
 
 use std::{fs, path::Path};
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::{FigureError, scale::Scale};
 use crate::{
-    manifest::{
-        Exhibit, Scene, SideName,
-        exhibit::{
-            Ambient, Camera, Comparison, Enhancement, Exposure, LampColour, LampKind, Member,
-            Surface,
-        },
-    },
+    manifest::{Exhibit, Scene, Source, exhibit::Surface},
     needs::Needs,
     optics::tier::Tier,
     tradeoff::{
         places::Maps,
-        scene::{Sampled, is_flattened},
+        scene::{Seen, is_flattened},
     },
 };
 
@@ -29,7 +23,11 @@ pub const FILE_POINTER: &str = "/picture/file";
 pub struct Facts {
     exhibit: Value,
     maps: Vec<Value>,
+    /// As a manifest has it,
     scene: Value,
+    /// and its lamps.
+    lamps: Value,
+    size_mm: [f64; 2],
     tier: &'static str,
     accuracy: Value,
     size: [u32; 2],
@@ -50,6 +48,31 @@ fn hash_of(path: &Path) -> Result<String, FigureError> {
     Ok(hash(&bytes))
 }
 
+/// What a picture is made of.
+struct Files<'e> {
+    exhibit: &'e Exhibit,
+    found: Vec<Value>,
+}
+
+impl Files<'_> {
+    /// Adds a file that is not there yet; without a source, that which the manifest says of it.
+    fn add(&mut self, path: &Path, source: Option<Source>) -> Result<(), FigureError> {
+        let name = path.strip_prefix(&self.exhibit.folder).unwrap_or(path);
+        let name = name.display().to_string();
+        if self.found.iter().any(|known| known["file"] == name) {
+            return Ok(());
+        }
+        let said = || Some(self.exhibit.maps().find(|map| map.path == path)?.source);
+        let source = source.or_else(said);
+        self.found.push(json!({
+            "file": name,
+            "source": source,
+            "blake3": hash_of(path)?,
+        }));
+        Ok(())
+    }
+}
+
 impl Facts {
     /// Of `scene` at `tier` in a picture of `size`, which the program makes again when it is called
     /// with `arguments`. Predicts its accuracy, for which the maps are read.
@@ -63,39 +86,29 @@ impl Facts {
         size: [u32; 2],
         arguments: Vec<String>,
     ) -> Result<Self, FigureError> {
-        let mut maps = Vec::new();
-        let needs = exhibit
-            .parts(scene, f64::from(size[0]) / f64::from(size[1].max(1)))
-            .into_iter()
-            .flat_map(|(member, _)| Needs::of(exhibit, &member, tier, false).sides);
-        for side in needs {
-            for map in &side.maps {
-                let file = map.file();
-                let name = file.path.strip_prefix(&exhibit.folder);
-                let name = name.unwrap_or(&file.path).display().to_string();
-                if !maps.iter().any(|known: &Value| known["file"] == name) {
-                    maps.push(json!({
-                        "file": name,
-                        "source": file.source,
-                        "blake3": hash_of(&file.path)?,
-                    }));
+        let mut files = Files {
+            exhibit,
+            found: Vec::new(),
+        };
+        for member in exhibit.each_alone(scene) {
+            for side in Needs::of(exhibit, &member, tier, false).sides {
+                for map in &side.maps {
+                    for path in map.files() {
+                        let own = map.file();
+                        files.add(path, (own.path == path).then_some(own.source))?;
+                    }
                 }
             }
+            match &exhibit.drawing_of(&member).surface {
+                Surface::Flat => {}
+                Surface::Height(map) => files.add(&map.file.path, Some(map.file.source))?,
+                Surface::Gltf(path) => files.add(path, None)?,
+            }
         }
-        let drawing = exhibit.drawing_of(scene);
-        let shape = match &drawing.surface {
-            Surface::Flat => None,
-            Surface::Height(map) => Some((&map.file.path, json!(map.file.source))),
-            Surface::Gltf(path) => Some((path, Value::Null)),
-        };
-        if let Some((path, source)) = shape {
-            let name = path.strip_prefix(&exhibit.folder).unwrap_or(path);
-            maps.push(json!({
-                "file": name.display().to_string(),
-                "source": source,
-                "blake3": hash_of(path)?,
-            }));
+        for path in exhibit.lamp_files(scene) {
+            files.add(&path, None)?;
         }
+        let maps = files.found;
         let manifest = &exhibit.manifest;
         let path = fs::canonicalize(manifest).unwrap_or_else(|_| manifest.clone());
         Ok(Self {
@@ -105,7 +118,13 @@ impl Facts {
                 "blake3": hash_of(manifest)?,
             }),
             maps,
-            scene: scene_as_json(exhibit, scene),
+            scene: exhibit
+                .written_scene(scene)
+                .map_or(Value::Null, |scene| json!(scene)),
+            lamps: exhibit
+                .written_lamps(scene)
+                .map_or(Value::Null, |lamps| json!(lamps)),
+            size_mm: exhibit.drawing_of(scene).size_mm.to_array(),
             tier: tier.name(),
             accuracy: accuracy(exhibit, scene, tier, size),
             size,
@@ -134,6 +153,8 @@ impl Facts {
             "exhibit": self.exhibit,
             "maps": self.maps,
             "scene": self.scene,
+            "lamps": self.lamps,
+            "size_mm": self.size_mm,
             "tier": self.tier,
             "accuracy": self.accuracy,
             "scale": scale,
@@ -157,236 +178,21 @@ fn accuracy(exhibit: &Exhibit, scene: &Scene, tier: Tier, size: [u32; 2]) -> Val
         remarks.push("enhancement is left aside");
     }
     if scene.compare.is_some() {
-        remarks.push("predicted for the scene without its comparison");
+        remarks.push("of the comparison's members the worst");
     }
-    let own = Scene {
-        compare: None,
-        ..scene.clone()
-    };
-    match Sampled::new(exhibit, &own, size, &mut Maps::default()) {
-        Ok(sampled) if sampled.count() > 0 => {
-            let forecasts = sampled.forecasts(&[tier]);
+    match Seen::new(exhibit, scene, size, &mut Maps::default()) {
+        Ok(seen) if seen.count() > 0 => {
+            let forecasts = seen.forecasts(&[tier]);
             let errors = forecasts.first().map(|forecast| forecast.errors);
             json!({
                 "what": "predicted Delta E 2000 from the reference, over the visible sheet",
                 "delta_e_mean": errors.map(|errors| errors.mean),
                 "delta_e_p95": errors.map(|errors| errors.p95),
-                "places": sampled.count(),
+                "places": seen.count(),
                 "remarks": remarks,
             })
         }
         Ok(_) => json!({ "what": "nothing of the sheet is in the picture" }),
         Err(error) => json!({ "what": format!("not predicted: {error}") }),
     }
-}
-
-/// All of a scene, by the keys and the ids of a manifest. Every field is named, so that a new one
-/// is not forgotten here.
-fn scene_as_json(exhibit: &Exhibit, scene: &Scene) -> Value {
-    let Scene {
-        id,
-        title,
-        text,
-        drawing,
-        side,
-        state,
-        overlays,
-        categories,
-        compare,
-        camera,
-        lamps,
-        ambient,
-        transmitted,
-        exposure,
-        enhance,
-        language,
-    } = scene;
-    let sheet = &exhibit.drawings[*drawing];
-    let overlays = overlays.iter().map(|(index, opacity)| {
-        json!({
-            "id": sheet.overlays[*index].id,
-            "opacity": opacity,
-            // Of its legend, from 0; null where all are shown.
-            "categories": categories.get(index),
-        })
-    });
-    let lamps = lamps.iter().map(|&lamp| lamp_as_json(exhibit, lamp));
-    let Ambient {
-        illuminance,
-        kelvin,
-    } = ambient;
-    let Exposure {
-        illuminance: exposed,
-        level,
-        white,
-    } = exposure;
-    let Enhancement {
-        relief_only,
-        exaggerate,
-        stretch,
-        sharpen,
-    } = enhance;
-    json!({
-        "id": id,
-        "title": title.0,
-        "text": text.0,
-        "drawing": sheet.id,
-        "size_mm": sheet.size_mm.to_array(),
-        "side": side,
-        "state": state.map(|index| &sheet.states[index].id),
-        "overlays": overlays.collect::<Vec<_>>(),
-        "compare": compare.as_ref().map(|compare| comparison_as_json(exhibit, scene, compare)),
-        "camera": camera_as_json(camera),
-        "lamps": lamps.collect::<Vec<_>>(),
-        "ambient": { "lux": illuminance, "kelvin": kelvin },
-        "transmitted": transmitted,
-        "exposure": { "lux": exposed, "level": level, "white_kelvin": white },
-        "enhance": {
-            "relief_only": relief_only,
-            "exaggerate": exaggerate,
-            "stretch": stretch.map(|stretch| stretch.to_array()),
-            "sharpen": sharpen,
-        },
-        "language": language,
-    })
-}
-
-fn camera_as_json(camera: &Camera) -> Value {
-    let Camera {
-        centre_mm,
-        width_mm,
-        tilt,
-        turn,
-        distance_mm,
-    } = camera;
-    json!({
-        "centre_mm": centre_mm.to_array(),
-        "width_mm": width_mm,
-        "tilt_deg": tilt,
-        "turn_deg": turn,
-        "distance_mm": distance_mm,
-    })
-}
-
-fn comparison_as_json(exhibit: &Exhibit, scene: &Scene, comparison: &Comparison) -> Value {
-    let Comparison {
-        mode,
-        of,
-        at,
-        angle,
-        centre,
-        radius,
-        magnify,
-        full_delta_e,
-        full_luminance,
-        coded: _,
-        turn: _,
-    } = comparison;
-    let sheet = exhibit.drawing_of(scene);
-    let member = |member: &Member| match member {
-        Member::State(index) => format!("state:{}", sheet.states[*index].id),
-        Member::Side(SideName::Recto) => "side:recto".to_owned(),
-        Member::Side(SideName::Verso) => "side:verso".to_owned(),
-        Member::Overlay(index) => format!("overlay:{}", sheet.overlays[*index].id),
-        Member::Drawing(index) => format!("drawing:{}", exhibit.drawings[*index].id),
-    };
-    json!({
-        "mode": mode,
-        "of": of.iter().map(member).collect::<Vec<_>>(),
-        "at": at,
-        "angle_deg": angle,
-        "centre": centre.to_array(),
-        "radius": radius,
-        "magnify": magnify,
-        "full_delta_e": full_delta_e,
-        "full_luminance": full_luminance,
-    })
-}
-
-fn lamp_as_json(exhibit: &Exhibit, lamp: usize) -> Value {
-    let lamp = &exhibit.lamps[lamp];
-    let mut written = match &lamp.kind {
-        LampKind::Distant {
-            illuminance,
-            elevation,
-            azimuth,
-        } => json!({
-            "kind": "distant",
-            "lux_at_sheet": illuminance,
-            "elevation_deg": elevation,
-            "azimuth_deg": azimuth,
-        }),
-        LampKind::Point {
-            intensity,
-            position_mm,
-        } => json!({
-            "kind": "point",
-            "candela": intensity,
-            "position_mm": position_mm.to_array(),
-        }),
-        LampKind::Spot {
-            intensity,
-            position_mm,
-            aim_mm,
-            hotspot,
-            falloff,
-        } => json!({
-            "kind": "spot",
-            "candela": intensity,
-            "position_mm": position_mm.to_array(),
-            "aim_mm": aim_mm.to_array(),
-            "hotspot_deg": hotspot,
-            "falloff_deg": falloff,
-        }),
-        LampKind::Rectangle {
-            luminance,
-            position_mm,
-            aim_mm,
-            size_mm,
-        } => json!({
-            "kind": "rectangle",
-            "nits": luminance,
-            "position_mm": position_mm.to_array(),
-            "aim_mm": aim_mm.to_array(),
-            "size_mm": size_mm.to_array(),
-        }),
-        LampKind::Disc {
-            luminance,
-            position_mm,
-            aim_mm,
-            diameter_mm,
-        } => json!({
-            "kind": "disc",
-            "nits": luminance,
-            "position_mm": position_mm.to_array(),
-            "aim_mm": aim_mm.to_array(),
-            "diameter_mm": diameter_mm,
-        }),
-        LampKind::Ies {
-            photometry: _,
-            position_mm,
-            aim_mm,
-        } => json!({
-            "kind": "ies",
-            "position_mm": position_mm.to_array(),
-            "aim_mm": aim_mm.to_array(),
-        }),
-        LampKind::LightTable { luminance } => json!({
-            "kind": "light-table",
-            "nits": luminance,
-        }),
-    };
-    let colour = match lamp.colour {
-        LampColour::Temperature(kelvin) => ("kelvin", json!(kelvin)),
-        LampColour::Chromaticity(xy) => ("xy", json!(xy)),
-    };
-    if let Value::Object(written) = &mut written {
-        let named = Map::from_iter([
-            ("id".to_owned(), json!(lamp.id)),
-            ("title".to_owned(), json!(lamp.title.0)),
-            (colour.0.to_owned(), colour.1),
-        ]);
-        written.extend(named);
-    }
-    written
 }

@@ -9,6 +9,8 @@ use super::{
         Camera, CompareMode, Comparison, Drawing, Exhibit, FlipAxis, Member, Scene, SideName,
     },
     frames,
+    overrides::NO_STATE,
+    raw::values::Choice,
 };
 use crate::units::Degrees;
 
@@ -200,6 +202,48 @@ const ROUND: usize = 96;
 const GRIP: f64 = 0.06;
 
 impl Comparison {
+    /// The same to the eye, with everything that its mode does not use as it is by itself.
+    pub fn as_shown(&self) -> Self {
+        let usual = Self::new(self.mode, self.of.clone());
+        let Self {
+            mode,
+            at,
+            angle,
+            centre,
+            radius,
+            magnify,
+            full_delta_e,
+            full_luminance,
+            coded,
+            turn,
+            of: _,
+        } = *self;
+        let usual = Self {
+            coded,
+            turn,
+            ..usual
+        };
+        match mode {
+            CompareMode::Curtain => Self { at, angle, ..usual },
+            CompareMode::Blend | CompareMode::Glass => Self { at, ..usual },
+            CompareMode::Loupe => Self {
+                centre,
+                radius,
+                magnify,
+                ..usual
+            },
+            CompareMode::Difference if full_luminance.is_some() => Self {
+                full_luminance,
+                ..usual
+            },
+            CompareMode::Difference => Self {
+                full_delta_e,
+                ..usual
+            },
+            CompareMode::SideBySide | CompareMode::Flicker => usual,
+        }
+    }
+
     /// Whether a hand at `ndc` takes its curtain or loupe, in a picture of `aspect`.
     pub fn is_taken_at(&self, ndc: DVec2, aspect: f64) -> bool {
         match self.mode {
@@ -252,7 +296,23 @@ impl Comparison {
     }
 }
 
+impl Scene {
+    /// The same to the eye, its comparison [as it is shown](Comparison::as_shown).
+    pub fn as_shown(&self) -> Self {
+        Self {
+            compare: self.compare.as_ref().map(Comparison::as_shown),
+            ..self.clone()
+        }
+    }
+}
+
 impl CompareMode {
+    /// The word that manifests use.
+    pub fn word(self) -> &'static str {
+        let named = Self::WORDS.iter().find(|(_, mode)| *mode == self);
+        named.map_or("", |(word, _)| word)
+    }
+
     /// Whether each pixel is made of both members; otherwise it belongs to one.
     pub fn combines(self) -> bool {
         matches!(self, Self::Blend | Self::Difference | Self::Glass)
@@ -275,6 +335,21 @@ impl CompareMode {
             false => format!("{least} to {most} for this mode"),
         };
         (!(least..=most).contains(&count)).then_some(allowed)
+    }
+
+    /// What is found and allowed, where it does not show these members against each other.
+    pub fn refuses(self, of: &[Member]) -> Option<(String, String)> {
+        let count = of.len();
+        if let Some(allowed) = self.allowed_instead_of(count) {
+            return Some((format!("{count} members"), allowed));
+        }
+        let is_side = |member: &Member| matches!(member, Member::Side(_));
+        (self == Self::Glass && !of.iter().all(is_side)).then(|| {
+            (
+                "members that are not the two sides of the sheet".to_owned(),
+                "side:recto and side:verso for glass".to_owned(),
+            )
+        })
     }
 }
 
@@ -318,12 +393,29 @@ impl Exhibit {
         members.map(member).collect()
     }
 
+    /// Width over height of what a scene's camera fills in a picture of `aspect`: of one of those beside
+    /// each other its cell.
+    pub fn own_aspect(&self, scene: &Scene, aspect: f64) -> f64 {
+        let parts = self.parts(scene, aspect);
+        parts
+            .first()
+            .map_or(aspect, |(_, part)| part.aspect(aspect))
+    }
+
+    /// All that a scene shows, as scenes without comparisons: its members, or itself.
+    pub fn each_alone(&self, scene: &Scene) -> Vec<Scene> {
+        match scene.compare {
+            Some(_) => self.members(scene),
+            None => vec![scene.clone()],
+        }
+    }
+
     /// The members that a scene without a comparison has to show against each other: its drawing's
     /// first two states, or its sides; none where there is nothing to compare.
     pub fn comparable(&self, scene: &Scene) -> Vec<Member> {
         let drawing = &self.drawings[scene.drawing];
         if drawing.states.len() >= 2 {
-            return vec![Member::State(0), Member::State(1)];
+            return vec![Member::State(Some(0)), Member::State(Some(1))];
         }
         self.both_sides(scene)
     }
@@ -336,6 +428,18 @@ impl Exhibit {
         }
     }
 
+    /// A member of a comparison of `drawing`, as manifests and options write it.
+    pub fn written_member(&self, drawing: &Drawing, member: Member) -> String {
+        match member {
+            Member::State(Some(state)) => format!("state:{}", drawing.states[state].id),
+            Member::State(None) => format!("state:{NO_STATE}"),
+            Member::Side(side) => format!("side:{}", side.word()),
+            // Also of a stack: STACK/700.
+            Member::Overlay(overlay) => format!("overlay:{}", drawing.overlays[overlay].id),
+            Member::Drawing(other) => format!("drawing:{}", self.drawings[other].id),
+        }
+    }
+
     fn member(&self, scene: &Scene, member: Member) -> Scene {
         let drawing = &self.drawings[scene.drawing];
         let mut shown = Scene {
@@ -343,7 +447,7 @@ impl Exhibit {
             ..scene.clone()
         };
         match member {
-            Member::State(state) => shown.state = Some(state),
+            Member::State(state) => shown.state = state,
             Member::Side(side) => turn(&mut shown, drawing, side),
             // On the side that it belongs to.
             Member::Overlay(overlay) => {
@@ -508,7 +612,7 @@ mod tests {
         let mut curtain = Comparison {
             at: 0.3,
             angle: Degrees(30.0),
-            of: vec![Member::State(0), Member::State(1)],
+            of: vec![Member::State(Some(0)), Member::State(Some(1))],
             ..Comparison::new(CompareMode::Curtain, Vec::new())
         };
         let (across, reach) = across(curtain.angle.radians(), 1.6);

@@ -372,6 +372,7 @@ impl Words {
             found: self.found,
             allowed: self.allowed,
             remedy: self.remedy,
+            unreadable: false,
         }
     }
 }

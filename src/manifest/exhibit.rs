@@ -633,9 +633,10 @@ pub enum CompareMode {
 
 /// One member of a comparison, written `state:before`, `side:verso`, `overlay:damage`,
 /// `band:stack/700`, `drawing:landscape`. Indices into the scene's drawing, or the exhibit for `Drawing`.
+/// Without a state, `state:none`, it is the sheet as its sides describe it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Member {
-    State(usize),
+    State(Option<usize>),
     Side(SideName),
     Overlay(usize),
     Drawing(usize),

@@ -43,6 +43,10 @@ pub struct Fault {
     pub allowed: String,
     /// What to do, often the nearest right word.
     pub remedy: String,
+    /// Whether it is the value of an option that cannot be read, whatever the exhibit: wrong usage,
+    /// and no fault of an input.
+    #[serde(skip)]
+    pub unreadable: bool,
 }
 
 impl fmt::Display for Fault {
@@ -218,6 +222,7 @@ mod tests {
             found: "\"sun\"".into(),
             allowed: String::new(),
             remedy: "name a lamp".into(),
+            unreadable: false,
         };
         assert_eq!(
             fault.to_string(),

@@ -215,5 +215,6 @@ fn fault(found: impl Into<String>, allowed: &str, remedy: &str) -> Fault {
         found: found.into(),
         allowed: allowed.to_owned(),
         remedy: remedy.to_owned(),
+        unreadable: false,
     }
 }

@@ -1,7 +1,13 @@
 //! What lies over a side in a scene, and how its files become one picture.
 
-use super::exhibit::{
-    Band, BandMix, BandView, Drawing, LegendEntry, Overlay, OverlayKind, Scene, Stack, Wording,
+use std::{collections::BTreeSet, path::Path};
+
+use super::{
+    document::Words,
+    exhibit::{
+        Band, BandMix, BandView, Drawing, LegendEntry, Overlay, OverlayKind, Scene, Stack, Wording,
+    },
+    fault::{did_you_mean, quote, quoted_list},
 };
 use crate::maps::{self, BandPicture, DIVERGING, MapError, Pyramid};
 
@@ -42,6 +48,45 @@ impl LegendEntry {
     }
 }
 
+/// The entries of a legend that these names call, in its order, and what is wrong with which name.
+pub fn chosen<'n>(
+    legend: &[LegendEntry],
+    names: impl Iterator<Item = (usize, &'n str)>,
+) -> (Vec<usize>, Vec<(usize, Words)>) {
+    let mut entries = BTreeSet::new();
+    let mut faults = Vec::new();
+    let mut known: Vec<&str> = Vec::new();
+    for (i, name) in names {
+        if known.contains(&name) {
+            let words = Words::new(
+                format!("the category {} a second time", quote(name)),
+                "each category once",
+                "remove one of the two",
+            );
+            faults.push((i, words));
+            continue;
+        }
+        known.push(name);
+        match legend.iter().position(|entry| entry.is_called(name)) {
+            // By another name, perhaps in another language, it may be there.
+            Some(entry) => drop(entries.insert(entry)),
+            None => faults.push((i, no_category(legend, name))),
+        }
+    }
+    (entries.into_iter().collect(), faults)
+}
+
+fn no_category(legend: &[LegendEntry], name: &str) -> Words {
+    let names = || legend.iter().map(LegendEntry::name);
+    let found = format!("the category {}", quote(name));
+    if legend.is_empty() {
+        let allowed = "categories of an overlay that has some";
+        return Words::new(found, allowed, "leave categories out");
+    }
+    let remedy = did_you_mean(name, names(), "write one of these");
+    Words::new(found, quoted_list(names()), remedy)
+}
+
 impl Overlay {
     /// Decodes it as it is shown.
     ///
@@ -66,6 +111,20 @@ impl Overlay {
                     }
                 }
             }
+        }
+    }
+}
+
+impl Overlay {
+    /// Every file that it is made of.
+    pub fn files(&self) -> Vec<&Path> {
+        match &self.kind {
+            OverlayKind::Bands(view) => view
+                .bands
+                .iter()
+                .map(|b| b.map.file.path.as_path())
+                .collect(),
+            _ => vec![&self.file.path],
         }
     }
 }

@@ -15,12 +15,13 @@ use super::{
         Camera, Drawing, Enhancement, Exhibit, Lamp, LegendEntry, MAX_LAMPS, MAX_OVERLAYS, Member,
         OverlayKind, Scene, SideName,
     },
-    frames, one, quote, quoted_list,
+    frames, one,
+    overlay::chosen,
+    quote, quoted_list,
     raw::{RawCamera, RawCompare, RawEnhance, RawShownOverlay},
-    validate::chosen,
 };
 use crate::units::Degrees;
-use spec::{decode, fault, parts, table, validated, value};
+use spec::{decode, fault, parts, table, unreadable, validated, value};
 
 /// The word for the sheet as its sides describe it.
 pub const NO_STATE: &str = "none";
@@ -82,7 +83,7 @@ impl Overrides {
             self.choose_overlays(&mut scene, drawing, &mut faults);
             match self.transmitted {
                 Some(share) if (0.0..=1.0).contains(&share) => scene.transmitted = share,
-                Some(share) => faults.push(fault(
+                Some(share) => faults.push(unreadable(
                     "--transmitted",
                     share.to_string(),
                     "a number from 0 to 1",
@@ -239,10 +240,10 @@ impl Overrides {
         let Some((mode, rest)) = spec.split_once(':') else {
             let allowed = "a mode, a colon and members";
             let remedy = "write it like curtain:state:before,state:after";
-            return Err(vec![fault(OPTION, quote(spec), allowed, remedy)]);
+            return Err(vec![unreadable(OPTION, quote(spec), allowed, remedy)]);
         };
         let (keys, members): (Vec<&str>, Vec<&str>) = parts(rest).partition(|p| p.contains('='));
-        let mut written = table(OPTION, keys)?;
+        let mut written = table(OPTION, "at=0.4", keys)?;
         let members: Vec<Value> = members.into_iter().map(Value::from).collect();
         written.insert("mode".to_owned(), mode.into());
         written.insert("of".to_owned(), members.into());
@@ -262,9 +263,10 @@ impl Overrides {
                 Err(found) => faults.extend(found),
             }
         }
-        if let Some(allowed) = raw.mode.allowed_instead_of(raw.of.iter().count()) {
-            let found = format!("{} members", raw.of.iter().count());
-            let remedy = "remove some, or choose another mode";
+        if of.len() == raw.of.iter().count()
+            && let Some((found, allowed)) = raw.mode.refuses(&of)
+        {
+            let remedy = "change them, or choose another mode";
             faults.push(fault(OPTION, found, allowed, remedy));
         }
         scene.compare = Some(raw.comparison(of));
@@ -276,11 +278,11 @@ impl Overrides {
         let Some(spec) = &self.enhance else {
             return Ok(scene.enhance);
         };
-        let raw: RawEnhance = decode(OPTION, table(OPTION, parts(spec))?.into())?;
+        let raw: RawEnhance = decode(OPTION, table(OPTION, "exaggerate=3", parts(spec))?.into())?;
         if !raw.is_stretch_sound() {
             let remedy = "write it like stretch=[0.2,0.8]";
             let allowed = "the lower end first, .01 apart at least";
-            return Err(vec![fault(OPTION, quote(spec), allowed, remedy)]);
+            return Err(vec![unreadable(OPTION, quote(spec), allowed, remedy)]);
         }
         Ok(raw.enhancement())
     }
@@ -306,9 +308,11 @@ fn member(
 ) -> Result<Member, Vec<Fault>> {
     let (kind, id) = text.split_once(':').unwrap_or((text, ""));
     match kind {
+        "state" if id == NO_STATE => Ok(Member::State(None)),
         "state" => {
             let ids = drawing.states.iter().map(|state| state.id.as_str());
-            resolve(option, "state", id, ids).map(Member::State)
+            let index = resolve(option, "state", id, ids.chain([NO_STATE]))?;
+            Ok(Member::State(Some(index)))
         }
         "overlay" | "band" => {
             let ids = drawing.overlays.iter().map(|overlay| overlay.id.as_str());
@@ -340,6 +344,14 @@ fn shown_overlay(
         Some((id, opacity)) => (id, Some(value(opacity))),
         None => (rest, None),
     };
+    if categories.is_some_and(|list| list.trim().is_empty()) {
+        return Err(vec![unreadable(
+            option,
+            format!("{}, a colon and no category", quote(spec)),
+            "ID[=OPACITY][:CATEGORY,…]",
+            "name the categories to be shown, or leave the colon out to show all of them",
+        )]);
+    }
     let ids = drawing.overlays.iter().map(|overlay| overlay.id.as_str());
     let index = resolve(option, "overlay", id, ids)?;
     let overlay = &drawing.overlays[index];
@@ -363,15 +375,11 @@ fn shown_overlay(
     };
     let mut faults = Vec::new();
     let categories = shown.categories.map(|list| {
-        let mut indices = Vec::new();
-        for (_, name) in list.iter() {
-            match chosen(legend, name.as_str()) {
-                Ok(entry) if indices.contains(&entry) => {}
-                Ok(entry) => indices.push(entry),
-                Err(words) => faults.push(fault(option, words.found, words.allowed, words.remedy)),
-            }
-        }
-        indices.sort_unstable();
+        let (indices, found) = chosen(legend, list.iter().map(|(i, name)| (i, name.as_str())));
+        let found = found.into_iter();
+        faults.extend(
+            found.map(|(_, words)| fault(option, words.found, words.allowed, words.remedy)),
+        );
         indices
     });
     if faults.is_empty() {
@@ -383,7 +391,7 @@ fn shown_overlay(
 }
 
 fn described_lamp(option: &str, spec: &str, exhibit: &Exhibit) -> Result<Lamp, Vec<Fault>> {
-    let mut lamp = table(option, parts(spec))?;
+    let mut lamp = table(option, "kind=point", parts(spec))?;
     // Nothing refers to it by its id.
     lamp.entry("id").or_insert_with(|| "lamp".into());
     let lamps = Value::Array(vec![lamp.into()]);
@@ -403,7 +411,7 @@ impl CameraChange {
         let (sizes, keys): (Vec<&str>, Vec<&str>) =
             parts(spec).partition(|part| part.starts_with(TRUE_SIZE));
         let mut faults = Vec::new();
-        let raw = table(CAMERA, keys)
+        let raw = table(CAMERA, "tilt_deg=30", keys)
             .and_then(|table| decode::<RawCamera>(CAMERA, table.into()))
             .map_err(|found| faults.extend(found));
         let true_size = match sizes[..] {
@@ -414,14 +422,14 @@ impl CameraChange {
             [_, again, ..] => {
                 let found = format!("{} as well", quote(again));
                 let remedy = "remove one of the two";
-                faults.push(fault(CAMERA, found, "one resolution", remedy));
+                faults.push(unreadable(CAMERA, found, "one resolution", remedy));
                 None
             }
         };
         if matches!(&raw, Ok(raw) if raw.width_mm.is_some()) && !sizes.is_empty() {
             let found = format!("width_mm together with {TRUE_SIZE}");
             let remedy = "remove one of the two";
-            faults.push(fault(CAMERA, found, "one of them", remedy));
+            faults.push(unreadable(CAMERA, found, "one of them", remedy));
         }
         match raw {
             Ok(raw) if faults.is_empty() => Ok(Self { true_size, raw }),
@@ -454,7 +462,7 @@ fn pixels_per_inch(part: &str) -> Result<f64, Vec<Fault>> {
     let ppi = text.parse().ok();
     ppi.filter(|ppi| (least..=most).contains(ppi))
         .ok_or_else(|| {
-            vec![fault(
+            vec![unreadable(
                 CAMERA,
                 quote(part),
                 format!("{TRUE_SIZE} and a number from {least} to {most}"),
@@ -481,7 +489,7 @@ fn resolve<'i>(
 
 fn too_many(option: &str, found: usize, most: usize) -> Fault {
     let found = format!("this option {found} times");
-    fault(option, found, format!("up to {most} times"), "remove some")
+    unreadable(option, found, format!("up to {most} times"), "remove some")
 }
 
 /// How faults name one of `count` options of the same name.

@@ -1,18 +1,18 @@
 //! What others ask of an exhibit.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
 use super::{
-    decode::Pattern,
+    decode::{Brief, Pattern},
     document::{self, Document, Words},
     exhibit::{
         Band, Camera, Drawing, Exhibit, HeightMap, MapFile, MediaContent, MediaMap, Overlay,
         OverlayKind, Scene, Side, SideName, SidePatch, State, Surface, Wording,
     },
     fault::{Fault, Faults, Severity, quote},
-    raw::values::FilePath,
+    raw::{lamp::RawLampKind, values::FilePath},
     validate::{PICTURE, map_words},
 };
 use crate::{
@@ -56,16 +56,45 @@ impl Exhibit {
         self.drawings.iter().flat_map(Drawing::maps)
     }
 
+    /// The files that the lamps of a scene are read from: photometric ones, and spectra.
+    pub fn lamp_files(&self, scene: &Scene) -> Vec<PathBuf> {
+        let lamps = scene.lamps.iter().map(|lamp| &self.lamps[*lamp]);
+        let written = lamps.filter_map(|lamp| lamp.written.as_deref());
+        let files = written.flat_map(|lamp| {
+            let photometry = match &lamp.kind {
+                RawLampKind::Ies(ies) => Some(&ies.file),
+                _ => None,
+            };
+            let spectrum = match &lamp.common.spectrum {
+                Some(Brief::Full(spectrum)) => spectrum.file.as_ref(),
+                _ => None,
+            };
+            photometry.into_iter().chain(spectrum)
+        });
+        files.map(|file| self.folder.join(file.as_str())).collect()
+    }
+
+    /// [`verify_files`](Self::verify_files) of these pictures.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn verify<'m>(
+        &self,
+        maps: impl IntoIterator<Item = &'m MapFile>,
+    ) -> Result<Vec<Fault>, Faults> {
+        self.verify_files(maps.into_iter().map(|map| map.path.as_path()))
+    }
+
     /// Decodes whole pictures, which finds truncated and damaged ones. Reading an exhibit looks
     /// at their headers only. Returns warnings of pixels that will not be shown as they are.
     ///
     /// # Errors
     /// All faults, each at the place in the manifest that names the picture.
-    pub fn verify<'m>(
+    pub fn verify_files<'p>(
         &self,
-        maps: impl IntoIterator<Item = &'m MapFile>,
+        files: impl IntoIterator<Item = &'p Path>,
     ) -> Result<Vec<Fault>, Faults> {
-        let mut paths: Vec<&Path> = maps.into_iter().map(|map| map.path.as_path()).collect();
+        let mut paths: Vec<&Path> = files.into_iter().collect();
         paths.sort();
         paths.dedup();
         let (mut warnings, mut faults) = (Vec::new(), Vec::new());

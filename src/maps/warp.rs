@@ -31,8 +31,13 @@ impl<'f> From<&'f PathBuf> for Placed<'f> {
     }
 }
 
-/// Places along each side of the sheet where the picture is looked for.
+/// Fields along each side of the rectangle where the picture is looked for,
 const SEARCH: usize = 64;
+/// and how often it is looked for in what was found before: a picture is found that is a millionth
+/// of the sheet.
+const SEARCHES: usize = 4;
+/// A search that narrows the rectangle to more than this share of it is the last.
+const NARROWER: f64 = 0.75;
 /// Texels between places where the spline itself is evaluated. It hardly bends over so few: a bend
 /// of 5 pixels over 600 departs from its chords by less than a hundredth of a pixel.
 const STEP: usize = 8;
@@ -60,35 +65,93 @@ pub struct Warp {
     size: [u32; 2],
 }
 
+/// What a bent picture covers of a sheet.
+struct Covered {
+    /// Upper left corner of an upright rectangle around it, and its size.
+    corner_mm: DVec2,
+    extent_mm: DVec2,
+    /// Pixels of the picture in a square mm, in the mean.
+    px2_per_mm2: f64,
+}
+
+impl Covered {
+    fn find(plate: &Plate, pixels: DVec2, sheet_mm: DVec2) -> Option<Self> {
+        let (mut low, mut high) = (DVec2::ZERO, sheet_mm);
+        for _ in 0..SEARCHES {
+            let [from, to] = Self::narrowed(plate, pixels, low, high)?;
+            let is_last = (to - from).cmpge((high - low) * NARROWER).all();
+            (low, high) = (from, to);
+            if is_last {
+                break;
+            }
+        }
+        let places = Self::places(low, high);
+        let is_inside = |mm: &DVec2| {
+            let px = plate.px_at(*mm);
+            px.cmpge(DVec2::ZERO).all() && px.cmple(pixels).all()
+        };
+        let densities: Vec<f64> = places
+            .into_par_iter()
+            .filter(is_inside)
+            .map(|mm| plate.jacobian_at(mm).determinant().abs())
+            .collect();
+        (!densities.is_empty()).then(|| Self {
+            corner_mm: low,
+            extent_mm: high - low,
+            px2_per_mm2: densities.iter().sum::<f64>() / densities.len() as f64,
+        })
+    }
+
+    /// Corners of the fields of a rectangle, in rows.
+    fn places(low: DVec2, high: DVec2) -> Vec<DVec2> {
+        let field = (high - low) / SEARCH as f64;
+        let corner = |i: usize| DVec2::new((i % (SEARCH + 1)) as f64, (i / (SEARCH + 1)) as f64);
+        let corners = (0..(SEARCH + 1) * (SEARCH + 1)).map(corner);
+        corners.map(|corner| low + corner * field).collect()
+    }
+
+    /// The rectangle around those fields of a rectangle that may hold something of the picture.
+    fn narrowed(plate: &Plate, pixels: DVec2, low: DVec2, high: DVec2) -> Option<[DVec2; 2]> {
+        let places = Self::places(low, high);
+        let px: Vec<DVec2> = places.par_iter().map(|mm| plate.px_at(*mm)).collect();
+        let mut found: Option<[DVec2; 2]> = None;
+        for i in 0..SEARCH * SEARCH {
+            let first = i / SEARCH * (SEARCH + 1) + i % SEARCH;
+            let last = first + SEARCH + 2;
+            let corners = [first, first + 1, last - 1, last].map(|i| px[i]);
+            let least = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
+            let most = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+            // Between its corners a field bends.
+            let bend = (most - least) / 4.0;
+            if (most + bend).cmpge(DVec2::ZERO).all() && (least - bend).cmple(pixels).all() {
+                let [from, to] = found.unwrap_or([places[first], places[last]]);
+                found = Some([from.min(places[first]), to.max(places[last])]);
+            }
+        }
+        found
+    }
+}
+
 impl Warp {
     /// Of a picture of `pixels` on a side of `sheet_mm`: onto what it covers of the sheet.
     ///
     /// # Errors
-    /// [`RegistrationError::Beside`] where it covers nothing of it.
-    pub fn new(plate: Plate, pixels: [u32; 2], sheet_mm: DVec2) -> Result<Self, RegistrationError> {
+    /// [`RegistrationError::Beside`] where it covers nothing of it, and
+    /// [`RegistrationError::Folded`] where it does and the plate folds.
+    pub(super) fn new(
+        plate: Plate,
+        pixels: [u32; 2],
+        sheet_mm: DVec2,
+    ) -> Result<Self, RegistrationError> {
         let pixels = pixels.map(f64::from);
-        let cell = sheet_mm / SEARCH as f64;
-        let inside = |px: DVec2| {
-            px.cmpge(DVec2::ZERO).all() && px.cmple(DVec2::new(pixels[0], pixels[1])).all()
-        };
-        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let (mut area, mut count) = (0.0, 0.0);
-        for i in 0..(SEARCH + 1) * (SEARCH + 1) {
-            let at = DVec2::new((i % (SEARCH + 1)) as f64, (i / (SEARCH + 1)) as f64) * cell;
-            if inside(plate.px_at(at)) {
-                low = low.min(at);
-                high = high.max(at);
-                area += plate.jacobian_at(at).determinant().abs();
-                count += 1.0;
-            }
-        }
-        if count == 0.0 {
-            return Err(RegistrationError::Beside);
-        }
-        // Its edges lie somewhere in the next cells.
-        let corner_mm = (low - cell).max(DVec2::ZERO);
-        let extent_mm = (high + cell).min(sheet_mm) - corner_mm;
-        let wanted = extent_mm * (area / count).sqrt();
+        let found = Covered::find(&plate, DVec2::from(pixels), sheet_mm);
+        let Covered {
+            corner_mm,
+            extent_mm,
+            px2_per_mm2,
+        } = found.ok_or(RegistrationError::Beside)?;
+        plate.refuse_folds(corner_mm, extent_mm)?;
+        let wanted = extent_mm * px2_per_mm2.sqrt();
         let most = pixels[0] * pixels[1] * MOST_GROWTH;
         let shrink = (most / (wanted.x * wanted.y))
             .sqrt()

@@ -104,7 +104,10 @@ pub enum MeasureError {
     #[error("the stroke runs {found_deg:.0}° off square to the section; turn the section by that")]
     Oblique { found_deg: f64 },
     /// Too much of a patch lies off the sheet.
-    #[error("the patch has {found} places on the sheet; this needs {needed}")]
+    #[error(
+        "the patch has {found} places on the sheet; this needs {needed}; make it larger than a few \
+         pixels, or move it onto the sheet"
+    )]
     OffSheet { found: usize, needed: usize },
 }
 

@@ -24,6 +24,14 @@ pub struct MediaStack<T> {
 }
 
 impl<T> MediaStack<T> {
+    /// Those of its maps, from the lowest.
+    pub fn files(&self) -> Vec<&Path> {
+        self.layers
+            .iter()
+            .map(|layer| layer.path.as_path())
+            .collect()
+    }
+
     fn new(media: &[MediaMap], mut of_medium: impl FnMut(usize) -> T) -> Option<Self> {
         let layers = media
             .iter()

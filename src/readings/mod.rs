@@ -90,6 +90,14 @@ impl Tool {
         }
     }
 
+    fn discs(&self) -> Vec<Disc> {
+        match self {
+            Self::Probe(disc) | Self::Against(disc, _) => vec![*disc],
+            Self::Difference(two) => two.to_vec(),
+            _ => Vec::new(),
+        }
+    }
+
     fn places(&self) -> Vec<DVec2> {
         match self {
             Self::Ruler(two) | Self::Profile(two) | Self::Lines(two) | Self::Stroke(two) => {
@@ -110,7 +118,7 @@ pub struct Value {
     pub quantity: &'static str,
     /// `None` where there is none, such as the spacing of lines that are not there.
     pub value: Option<f64>,
-    /// Standard uncertainty, in the same unit.
+    /// Standard uncertainty, in the same unit, where it is known.
     pub sigma: Option<f64>,
     /// Empty for a pure number.
     pub unit: &'static str,
@@ -155,6 +163,20 @@ impl Value {
             }
             (Some(value), None) => format!("{value}{space}{}", self.unit),
             (None, _) => "none".to_owned(),
+        }
+    }
+
+    /// Of places that are as `accuracy` says; without an uncertainty where it says nothing.
+    fn as_known(
+        quantity: &'static str,
+        measured: Measured,
+        unit: &'static str,
+        accuracy: Accuracy,
+    ) -> Self {
+        let value = Self::new(quantity, measured, unit);
+        Self {
+            sigma: value.sigma.filter(|_| is_known(accuracy)),
+            ..value
         }
     }
 
@@ -207,6 +229,8 @@ pub struct Sample {
 pub enum ReadingError {
     #[error("{}, off the sheet", at(*place))]
     OffSheet { place: DVec2, size_mm: DVec2 },
+    #[error("a radius of {radius_mm} mm, wider than the sheet")]
+    TooWide { radius_mm: f64, size_mm: DVec2 },
     #[error("a {side} without a picture{in_state}", side = side.word())]
     NoPicture { side: SideName, in_state: String },
     #[error("a {side} without a height map{in_state}", side = side.word())]
@@ -224,6 +248,10 @@ impl ReadingError {
             Self::OffSheet { size_mm, .. } => (
                 format!("0 to {} across, 0 to {} down", size_mm.x, size_mm.y),
                 "count mm from the top left corner of the side that is seen",
+            ),
+            Self::TooWide { size_mm, .. } => (
+                format!("a radius of up to {} mm", size_mm.max_element() / 2.0),
+                "give the radius in mm",
             ),
             Self::NoPicture { .. } => (
                 String::new(),
@@ -292,6 +320,13 @@ impl<'e> Desk<'e> {
             .filter(off)
             .map(|place| ReadingError::OffSheet { place, size_mm })
             .collect();
+        let too_wide = tool
+            .discs()
+            .into_iter()
+            .map(|disc| disc.radius_mm)
+            .filter(|radius_mm| *radius_mm > size_mm.max_element() / 2.0)
+            .map(|radius_mm| ReadingError::TooWide { radius_mm, size_mm });
+        let faults: Vec<ReadingError> = faults.into_iter().chain(too_wide).collect();
         if !faults.is_empty() {
             return Err(faults);
         }
@@ -316,9 +351,9 @@ impl<'e> Desk<'e> {
                     "ruler {} to {}: {}",
                     at(*from),
                     at(*to),
-                    plus_minus(length, " mm")
+                    as_known(length, " mm", accuracy)
                 );
-                let values = vec![Value::new("length", length, "mm")];
+                let values = vec![Value::as_known("length", length, "mm", accuracy)];
                 Ok(reading(tool, values, words, notes))
             }
             Tool::Path { places, closed } => {
@@ -328,11 +363,11 @@ impl<'e> Desk<'e> {
                     let words = format!(
                         "path of {} places: {}",
                         places.len(),
-                        plus_minus(length, " mm")
+                        as_known(length, " mm", accuracy)
                     );
                     return Ok(reading(
                         tool,
-                        vec![Value::new("length", length, "mm")],
+                        vec![Value::as_known("length", length, "mm", accuracy)],
                         words,
                         notes,
                     ));
@@ -342,20 +377,24 @@ impl<'e> Desk<'e> {
                 let words = format!(
                     "outline of {} corners: area {}, perimeter {}",
                     places.len(),
-                    plus_minus(area, " mm²"),
-                    plus_minus(perimeter, " mm")
+                    as_known(area, " mm²", accuracy),
+                    as_known(perimeter, " mm", accuracy)
                 );
                 let values = vec![
-                    Value::new("area", area, "mm²"),
-                    Value::new("perimeter", perimeter, "mm"),
+                    Value::as_known("area", area, "mm²", accuracy),
+                    Value::as_known("perimeter", perimeter, "mm", accuracy),
                 ];
                 Ok(reading(tool, values, words, notes))
             }
             Tool::Angle([from, corner, to]) => {
                 let (accuracy, notes) = self.accuracy(screen_mm);
                 let angle = measure::angle(*from, *corner, *to, accuracy)?;
-                let words = format!("angle at {}: {}", at(*corner), plus_minus(angle, "°"));
-                let values = vec![Value::new("angle", angle, "°")];
+                let words = format!(
+                    "angle at {}: {}",
+                    at(*corner),
+                    as_known(angle, "°", accuracy)
+                );
+                let values = vec![Value::as_known("angle", angle, "°", accuracy)];
                 Ok(reading(tool, values, words, notes))
             }
             Tool::Profile(ends) => self.relief(tool, *ends, screen_mm),
@@ -405,6 +444,18 @@ impl<'e> Desk<'e> {
             accuracy.registration_mm = accuracy.registration_mm.max(residual);
             notes.extend(note);
         }
+        if accuracy.map_mm == 0.0 {
+            let side = self.scene.side.word();
+            notes.push(match screen_mm > 0.0 {
+                true => format!(
+                    "the {side} has no picture: the uncertainty is that of pointing at the screen alone"
+                ),
+                false => format!(
+                    "the {side} has no picture in which places are read: how exactly they are known is \
+                     not known"
+                ),
+            });
+        }
         notes.sort();
         notes.dedup();
         (accuracy, notes)
@@ -442,6 +493,19 @@ impl<'e> Desk<'e> {
             "{} is {how}, not measured: the uncertainty is that of reading it",
             self.name_of(file)
         ))
+    }
+}
+
+/// Whether anything is known of how exact places are.
+fn is_known(accuracy: Accuracy) -> bool {
+    accuracy.map_mm.max(accuracy.screen_mm) > 0.0
+}
+
+/// In words, with its uncertainty where that is known.
+fn as_known(measured: Measured, unit: &str, accuracy: Accuracy) -> String {
+    match is_known(accuracy) {
+        true => plus_minus(measured, unit),
+        false => format!("{:.3}{unit}, how exactly is not known", measured.value),
     }
 }
 

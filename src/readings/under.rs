@@ -90,7 +90,7 @@ impl Desk<'_> {
     /// The states of the comparison, if it is of two.
     fn compared_states(&self) -> Option<[Option<usize>; 2]> {
         match self.scene.compare.as_ref()?.of[..] {
-            [Member::State(first), Member::State(second)] => Some([Some(first), Some(second)]),
+            [Member::State(first), Member::State(second)] => Some([first, second]),
             _ => None,
         }
     }

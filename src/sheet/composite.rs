@@ -10,7 +10,10 @@ use bevy::{
     shader::ShaderRef,
 };
 
-use crate::manifest::exhibit::{CompareMode, Scene};
+use crate::manifest::{
+    exhibit::{CompareMode, Scene},
+    lighting::TABLE,
+};
 
 /// Twin of `Composite` in `shaders/composite.wgsl`: what is made of the pictures.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -23,6 +26,7 @@ pub struct CompositeUniform {
     pub mirrored: u32,
     pub coded: u32,
     pub sharpen: f32,
+    pub table: f32,
 }
 
 impl CompositeUniform {
@@ -35,6 +39,7 @@ impl CompositeUniform {
             level: scene.exposure.level as f32,
             coded: 1,
             sharpen: enhance.sharpen as f32,
+            table: TABLE,
             ..Self::default()
         };
         if let Some(comparison) = scene.compare.as_ref().filter(|c| c.mode.combines()) {

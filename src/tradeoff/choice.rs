@@ -2,7 +2,7 @@
 
 use super::{
     places::{MapFault, Maps},
-    scene::{Forecast, Sampled},
+    scene::{Forecast, Seen},
     table::{Cost, Table},
 };
 use crate::{
@@ -73,7 +73,7 @@ impl Outlook {
         let needs = Needs::of(exhibit, scene, Tier::Study, false);
         let side = needs.sides.first();
         Ok(Self {
-            forecasts: Sampled::new(exhibit, scene, size, maps)?.forecasts(&LADDER),
+            forecasts: Seen::new(exhibit, scene, size, maps)?.forecasts(&LADDER),
             costs: side.map_or_else(Costs::default, |side| Costs::of(table, &side.terms)),
         })
     }

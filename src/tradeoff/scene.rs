@@ -41,6 +41,27 @@ pub struct Forecast {
     pub errors: Errors,
 }
 
+impl Forecast {
+    /// Of a tier in two scenes that are seen at once: each error where it is worse.
+    fn worse(self, other: Self) -> Self {
+        let Errors {
+            rms,
+            mean,
+            p95,
+            max,
+        } = other.errors;
+        Self {
+            tier: self.tier,
+            errors: Errors {
+                rms: self.errors.rms.max(rms),
+                mean: self.errors.mean.max(mean),
+                p95: self.errors.p95.max(p95),
+                max: self.errors.max.max(max),
+            },
+        }
+    }
+}
+
 /// What a picture loses without a part of the model: ΔE00 between study with and without it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worth {
@@ -49,11 +70,67 @@ pub struct Worth {
     pub p95: f64,
 }
 
+impl Worth {
+    /// Of a part in two scenes that are seen at once: what it is worth where that is more.
+    fn more(self, other: Self) -> Self {
+        Self {
+            aspect: self.aspect,
+            mean: self.mean.max(other.mean),
+            p95: self.p95.max(other.p95),
+        }
+    }
+}
+
 /// A scene's sheet at the places that are looked at.
 pub struct Sampled {
     places: Vec<Place>,
     lighting: Lighting,
     level: f64,
+}
+
+/// All sheets that a scene shows: its own, or those of its comparison's members. One tier shows them
+/// all, and is as exact as where it is worst.
+pub struct Seen(Vec<Sampled>);
+
+impl Seen {
+    /// [`Sampled::new`] of each.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn new(
+        exhibit: &Exhibit,
+        scene: &Scene,
+        size: [u32; 2],
+        maps: &mut Maps,
+    ) -> Result<Self, MapFault> {
+        let alone = exhibit.each_alone(scene);
+        let sampled = alone
+            .iter()
+            .map(|member| Sampled::new(exhibit, member, size, maps));
+        Ok(Self(sampled.collect::<Result<_, _>>()?))
+    }
+
+    /// How many places are looked at.
+    pub fn count(&self) -> usize {
+        self.0.iter().map(Sampled::count).sum()
+    }
+
+    /// These tiers against the judge.
+    pub fn forecasts(&self, tiers: &[Tier]) -> Vec<Forecast> {
+        let each = self.0.iter().map(|sampled| sampled.forecasts(tiers));
+        place_by_place(each, Forecast::worse)
+    }
+
+    /// What each part of the model is worth.
+    pub fn worths(&self) -> Vec<Worth> {
+        place_by_place(self.0.iter().map(Sampled::worths), Worth::more)
+    }
+}
+
+/// Lists of one length put together.
+fn place_by_place<T>(lists: impl Iterator<Item = Vec<T>>, of: fn(T, T) -> T) -> Vec<T> {
+    let both = |a: Vec<T>, b: Vec<T>| a.into_iter().zip(b).map(|(a, b)| of(a, b)).collect();
+    lists.reduce(both).unwrap_or_default()
 }
 
 /// One place.

@@ -254,7 +254,8 @@ fn hotspot_lines(shown: &Shown, hotspot: &Hotspot) -> Vec<String> {
 pub(super) fn name(shown: &Shown, member: Member) -> String {
     let drawing = shown.exhibit.drawing_of(&shown.scene);
     let (title, id) = match member {
-        Member::State(state) => (&drawing.states[state].title, &drawing.states[state].id),
+        Member::State(Some(state)) => (&drawing.states[state].title, &drawing.states[state].id),
+        Member::State(None) => return "no state".to_owned(),
         Member::Side(side) => return side.word().to_owned(),
         Member::Overlay(overlay) => {
             let overlay = &drawing.overlays[overlay];

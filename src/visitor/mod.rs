@@ -117,6 +117,7 @@ fn first_scene(exhibit: &Exhibit, id: Option<&str>) -> Result<usize, Faults> {
             found: quote(id),
             allowed: quoted_list(ids()),
             remedy: did_you_mean(id, ids(), "name a scene of the exhibit"),
+            unreadable: false,
         }
         .into()
     })

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{Sheet, code, files, recto, run, stdout, with_closed_stdout, write_picture};
+use super::{EDGE, Sheet, code, files, recto, run, stdout, with_closed_stdout, write_picture};
 
 #[test]
 fn wrong_usage_ends_with_2() {
@@ -34,6 +34,21 @@ fn wrong_usage_ends_with_2() {
         render(["--side", "front"]),
         render(["--tier", "best"]),
         render(["--all-scenes", "--scene=whole"]),
+        render(["--transmitted", "-1"]),
+        render(["--transmitted", "all"]),
+        render(["--enhance", ""]),
+        render(["--enhance", "sharpen=2"]),
+        render(["--overlay", "picture:"]),
+        render(["--overlay", "picture=2"]),
+        render(["--camera", "tilt_deg=95"]),
+        render(["--lamp", "kind=pint"]),
+        render(["--compare", "curtain"]),
+        render(["--language", "?"]),
+        vec!["register", exhibit, "--reach-mm", "0"],
+        vec!["register", exhibit, "--reach-mm", "-3"],
+        vec!["measure", exhibit, "--ruler", "1,1"],
+        vec!["measure", exhibit, "--probe", "1,1,0"],
+        vec!["probe", exhibit, "--at", "1"],
     ] {
         let output = run(&arguments);
         let stderr = code(&output, 2);
@@ -47,14 +62,15 @@ fn wrong_usage_ends_with_2() {
 fn a_comparison_s_faults_are_all_named_and_nothing_is_written() {
     let sheet = Sheet::new();
     let out = sheet.out("x.png");
-    let compare = |spec: &str| {
+    let ends = |spec: &str, with: i32| {
         let output = recto()
             .args(["render", "--size", "16x16", "--compare", spec, "--out"])
             .arg(&out)
             .arg(sheet.exhibit())
             .output();
-        code(&output.unwrap(), 1)
+        code(&output.unwrap(), with)
     };
+    let compare = |spec: &str| ends(spec, 1);
     let stderr = compare("curtain:state:a,overlay:pictur");
     assert!(stderr.contains("--compare.of[0]: found \"a\""), "{stderr}");
     assert!(stderr.contains("did you mean \"picture\"?"), "{stderr}");
@@ -63,14 +79,20 @@ fn a_comparison_s_faults_are_all_named_and_nothing_is_written() {
         stderr.contains("found 3 members; allowed: 2 for this mode"),
         "{stderr}"
     );
-    for spec in [
-        "curtain",
-        "curtian:side:recto,side:verso",
-        "loupe:side:recto,side:recto",
+    for (spec, with) in [
+        ("curtain", 2),
+        ("curtian:side:recto,side:verso", 2),
+        ("loupe:side:recto,side:recto", 1),
+        ("glass:side:recto,overlay:picture", 1),
     ] {
-        assert!(compare(spec).contains("--compare"), "{spec}");
+        assert!(ends(spec, with).contains("--compare"), "{spec}");
     }
-    assert!(compare("curtain:side:recto,side:verso,at=2").contains("0 to 1"));
+    assert!(ends("curtain:side:recto,side:verso,at=2", 2).contains("0 to 1"));
+    let radius = ends("loupe:side:recto,side:verso,radius=0", 2);
+    assert!(radius.contains("from 0.01 to 1"), "{radius}");
+    let key = ends("loupe:side:recto,side:verso,at=.5", 2);
+    let words = "--compare.at: found a key that mode \"loupe\" does not use";
+    assert!(key.contains(words), "{key}");
     assert!(!out.exists());
 }
 
@@ -244,6 +266,72 @@ fn check_tells_people_and_programs_the_same() {
     let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
     assert_eq!(json["sound"], false);
     assert_eq!(json["faults"][0]["line"], 5);
+}
+
+#[test]
+fn a_comparison_is_checked_with_all_its_members() {
+    let sheet = Sheet::rich();
+    let check = |more: &str| {
+        let output = recto().arg("check").arg(sheet.exhibit()).arg(more).output();
+        output.unwrap()
+    };
+    let json = check("--json");
+    code(&json, 0);
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let scene = |id: &str| {
+        let scenes = json["scenes"].as_array().unwrap();
+        scenes.iter().find(|scene| scene["id"] == id).unwrap()
+    };
+    let [now, then, both] = ["now", "then", "both"].map(scene);
+    let files = |scene: &serde_json::Value| {
+        let maps = scene["maps"].as_array().unwrap().iter();
+        let albedo = maps.filter(|map| map["role"] == "albedo");
+        albedo
+            .map(|map| map["file"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(files(now), ["sheet.png"]);
+    assert_eq!(files(then), ["before.png"]);
+    assert_eq!(files(both), ["before.png", "sheet.png"]);
+    // What both members need is there once.
+    let bytes = |scene: &serde_json::Value| {
+        let maps = scene["maps"].as_array().unwrap().iter();
+        let sum: u64 = maps.map(|map| map["gpu_bytes"].as_u64().unwrap()).sum();
+        assert_eq!(scene["gpu_bytes"], sum);
+        sum
+    };
+    let albedo = u64::from(EDGE * EDGE) * 8 * 4 / 3;
+    if both["accuracy"]["tier"] == now["accuracy"]["tier"] {
+        assert_eq!(bytes(both), bytes(now) + albedo);
+    }
+    let in_window = |scene: &serde_json::Value| scene["gpu_bytes_in_window"].as_u64().unwrap();
+    assert!(in_window(both) > in_window(now));
+    // It is as exact as the worse of both.
+    let errors = |scene: &serde_json::Value| -> Vec<f64> {
+        let tiers = scene["accuracy"]["tiers"].as_array().unwrap().iter();
+        tiers
+            .map(|tier| tier["delta_e_mean"].as_f64().unwrap())
+            .collect()
+    };
+    let [now_errors, then_errors, both_errors] = [now, then, both].map(errors);
+    assert_ne!(now_errors, then_errors);
+    for (k, error) in both_errors.iter().enumerate() {
+        let worse = now_errors[k].max(then_errors[k]);
+        assert!((error - worse).abs() < 1e-9, "{error} {worse}");
+    }
+    assert_eq!(both["compared"]["mode"], "curtain");
+    assert_eq!(both["compared"]["of"][1], "state:none");
+    assert!(now["compared"].is_null() && now["enhanced"].as_array().unwrap().is_empty());
+
+    let long = check("--explain");
+    for words in [
+        "curtain of state:before and state:none, whose maps are all loaded",
+        "enhanced for the eye, and said so on the picture: relief 2.0 times as steep; sharpened: 50 %",
+        "state:before: recto: albedo from",
+        "state:none: recto: albedo from",
+    ] {
+        assert!(stdout(&long).contains(words), "{words}: {}", stdout(&long));
+    }
 }
 
 #[test]

@@ -89,6 +89,12 @@ fn a_slanted_view_says_where_its_bar_holds() {
         let scale = &sidecar(&out)["scale"];
         assert_eq!(scale["holds"], holds, "{more:?}");
         assert_eq!(scale["outside_the_loupe"], more[0].contains("loupe"));
+        if more[0].contains("side-by-side") {
+            // The whole sheet of 100 mm, and 4 % of it on either side, fills each half's width.
+            let expected = 108.0 / f64::from(SIZE[0] / 2);
+            let found = scale["mm_per_px"].as_f64().unwrap();
+            assert!((found - expected).abs() < 1e-9, "{found}");
+        }
         let [mm, px, each] =
             ["bar_mm", "bar_px", "mm_per_px"].map(|key| scale[key].as_f64().unwrap());
         assert!((mm - px * each).abs() < 1e-9 && (bar_px(&out) - px).abs() < 1.0);
@@ -152,6 +158,8 @@ fn the_sidecar_makes_the_same_picture_again() {
         assert!(said["accuracy"]["delta_e_mean"].is_f64(), "{said}");
         assert_eq!(said["scene"]["drawing"], "sheet");
         assert_eq!(said["scene"]["lamps"].as_array().unwrap().len(), 1);
+        assert_eq!(said["lamps"].as_array().unwrap().len(), 1);
+        assert_eq!(said["size_mm"][0], 100.0);
         let command = said["command"].as_str().unwrap();
         assert!(
             command.starts_with("recto render /") && command.contains("--figure"),
@@ -172,6 +180,67 @@ fn the_sidecar_makes_the_same_picture_again() {
 
 fn blake3_of(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
+}
+
+#[test]
+fn the_sidecar_has_every_file_that_decides_the_picture() {
+    let sheet = Sheet::rich();
+    let out = sheet.out("x.png");
+    let listed = |more: &[&str]| {
+        code(&figure(&sheet, &out, more), 0);
+        let maps = sidecar(&out)["maps"].as_array().unwrap().clone();
+        for map in &maps {
+            let path = sheet.exhibit().join(map["file"].as_str().unwrap());
+            assert_eq!(map["blake3"], blake3_of(&fs::read(path).unwrap()), "{map}");
+        }
+        let mut files: Vec<String> = maps
+            .iter()
+            .map(|map| map["file"].as_str().unwrap().to_owned())
+            .collect();
+        files.sort();
+        files
+    };
+    // The light of every scene has a spectrum from a file.
+    assert_eq!(
+        listed(&["--scene=now", "--tier=lambert"]),
+        ["even.csv", "sheet.png"]
+    );
+    // Media decide how rough the surface is, and of what it is.
+    for tier in ["--tier=gallery", "--tier=study"] {
+        assert_eq!(
+            listed(&["--scene=now", tier]),
+            ["even.csv", "over.png", "sheet.png", "under.png"]
+        );
+    }
+    assert_eq!(
+        listed(&["--scene=both", "--tier=lambert"]),
+        ["before.png", "even.csv", "sheet.png"]
+    );
+    assert_eq!(
+        listed(&["--scene=ink", "--tier=lambert"]),
+        ["550.png", "850.png", "even.csv", "sheet.png"]
+    );
+    // The scene is told as the manifest would have it.
+    let said = sidecar(&out);
+    assert_eq!(said["scene"]["compare"]["mode"], "loupe");
+    assert_eq!(said["scene"]["compare"]["of"][1], "overlay:light/ink");
+    assert_eq!(said["scene"]["lamps"][0], "even");
+    assert_eq!(said["lamps"][0]["spectrum"]["file"], "even.csv");
+    assert!(said["accuracy"]["delta_e_mean"].is_f64(), "{said}");
+}
+
+#[test]
+fn damaged_files_of_members_and_stacks_are_found_before_anything_is_written() {
+    for (damaged, named) in [("before.png", "before.png"), ("850.png", "850.png")] {
+        let sheet = Sheet::rich();
+        let path = sheet.exhibit().join(damaged);
+        let bytes = fs::read(&path).unwrap();
+        fs::write(&path, &bytes[..bytes.len() - 20]).unwrap();
+        let out = sheet.out("all");
+        let stderr = code(&sheet.render(&out, &["--all-scenes"]).output().unwrap(), 1);
+        assert!(stderr.contains(named), "{stderr}");
+        assert!(!out.exists());
+    }
 }
 
 #[test]

@@ -427,7 +427,7 @@ fn readings_go_to_standard_output_as_words_as_json_and_as_csv() {
             .map(|part| part.matches(',').count())
             .sum::<usize>()
     };
-    assert!(rows.lines().all(|row| columns(row) == 10), "{rows}");
+    assert!(rows.lines().all(|row| columns(row) == 13), "{rows}");
 
     let output = measure(&sheet.exhibit(), &[&arguments[..7], &["--json"]].concat());
     code(&output, 0);
@@ -467,7 +467,8 @@ fn every_fault_is_named_at_once() {
         plot.to_str().unwrap(),
     ];
     let output = measure(&sheet.exhibit(), &arguments);
-    let stderr = code(&output, 1);
+    // Two of them cannot be read, whatever the exhibit is.
+    let stderr = code(&output, 2);
     assert!(output.stdout.is_empty());
     for words in [
         "--ruler[0]: found -1,5, off the sheet; allowed: 0 to 100 across, 0 to 100 down",
@@ -484,10 +485,59 @@ fn every_fault_is_named_at_once() {
     assert_eq!(files(sheet.root.path()), ["exhibit"]);
 
     let output = measure(&sheet.exhibit(), &[&arguments[..7], &["--json"]].concat());
-    code(&output, 1);
+    code(&output, 2);
     let json: Value = serde_json::from_str(stdout(&output)).unwrap();
     assert_eq!(json["sound"], false);
     assert_eq!(json["faults"].as_array().unwrap().len(), 8);
+}
+
+#[test]
+fn a_probe_that_is_wider_than_the_sheet_or_finer_than_its_pixels_says_so() {
+    let sheet = Sheet::new();
+    let said = |probe: &str, with: i32| code(&measure(&sheet.exhibit(), &[probe]), with);
+    let wide = said("--probe=50,50,1e9", 1);
+    assert!(
+        wide.contains("found a radius of 1000000000 mm, wider than the sheet; allowed: a radius of up to 50 mm"),
+        "{wide}"
+    );
+    let fine = said("--probe=50,50,0.001", 1);
+    assert!(fine.contains("make it larger than a few pixels"), "{fine}");
+    let none = said("--probe=50,50,0", 2);
+    assert!(none.contains("write it like 20,30 or 20,30,2"), "{none}");
+    said("--probe=50,50,50", 0);
+}
+
+#[test]
+fn where_nothing_is_read_how_exactly_is_not_known() {
+    let sheet = Sheet::new();
+    let manifest = sheet.exhibit().join("exhibit.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    fs::write(
+        &manifest,
+        text.replace("verso.albedo = \"verso.png\"\n", ""),
+    )
+    .unwrap();
+    let bare = |more: &[&str]| {
+        let arguments = [
+            "--side=verso",
+            "--ruler=10,20:60,20",
+            "--angle=60,20:10,20:10,70",
+        ];
+        measure(&sheet.exhibit(), &[&arguments[..], more].concat())
+    };
+    let said = bare(&[]);
+    let notes = code(&said, 0);
+    assert!(
+        stdout(&said).contains("50.000 mm, how exactly is not known")
+            && stdout(&said).contains("90.000°, how exactly is not known"),
+        "{}",
+        stdout(&said)
+    );
+    assert!(notes.contains("the verso has no picture"), "{notes}");
+    let json: Value = serde_json::from_str(stdout(&bare(&["--json"]))).unwrap();
+    assert_eq!(json["readings"][0]["values"][0]["sigma"], Value::Null);
+    let recto = measure(&sheet.exhibit(), &["--ruler=10,20:60,20"]);
+    assert!(stdout(&recto).contains(" ± "), "{}", stdout(&recto));
 }
 
 #[test]

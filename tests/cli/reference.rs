@@ -97,7 +97,7 @@ fn bad_arguments_are_refused_in_words_and_nothing_is_written() {
     }
     // What is wrong with the scene is said as render says it.
     let options = ["--scene", "hole", "--lamp", "kind=pint"];
-    let stderr = code(&reference(&sheet, &out, &options).output().unwrap(), 1);
+    let stderr = code(&reference(&sheet, &out, &options).output().unwrap(), 2);
     assert!(stderr.contains("did you mean \"whole\"?"), "{stderr}");
     assert!(stderr.contains("did you mean \"point\"?"), "{stderr}");
     fs::write(sheet.exhibit().join("sheet.png"), "no picture").unwrap();

@@ -5,7 +5,7 @@ use std::fs;
 use image::GenericImageView;
 use recto::{develop::Print, maps::encode};
 
-use super::{Sheet, code, files, stdout};
+use super::{Sheet, code, files, recto, stdout};
 
 #[test]
 fn without_a_driver_the_program_ends_with_3_and_says_what_to_install() {
@@ -101,11 +101,29 @@ fn faulty_options_are_all_named_and_nothing_is_written() {
     let out = sheet.out("x.png");
     let options = ["--scene", "hole", "--lamp", "kind=pint", "--language", "?"];
     let output = sheet.render(&out, &options).output().unwrap();
-    let stderr = code(&output, 1);
+    // Some of them cannot be read whatever the exhibit is.
+    let stderr = code(&output, 2);
     assert!(stderr.contains("did you mean \"whole\"?"), "{stderr}");
     assert!(stderr.contains("did you mean \"point\"?"), "{stderr}");
     assert!(stderr.contains("--language"), "{stderr}");
     assert_eq!(files(sheet.root.path()), ["exhibit"]);
+}
+
+#[test]
+fn what_is_not_shown_yet_is_said_by_check_alone() {
+    let sheet = Sheet::new();
+    let manifest = sheet.exhibit().join("exhibit.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let tour = "\n[[tour]]\nid = \"attract\"\nscenes = [\"whole\"]\n";
+    fs::write(&manifest, text + tour).unwrap();
+    let check = recto().arg("check").arg(sheet.exhibit()).output().unwrap();
+    assert!(
+        stdout(&check).contains("tours do not run yet"),
+        "{}",
+        stdout(&check)
+    );
+    let out = sheet.out("x.png");
+    assert_eq!(code(&sheet.render(&out, &[]).output().unwrap(), 0), "");
 }
 
 #[test]

@@ -9,11 +9,12 @@ use recto::{
     manifest::{
         Exhibit, Scene,
         comparison::Part,
-        exhibit::{CompareMode, Comparison, Member, SideName},
+        exhibit::{Camera, CompareMode, Comparison, Member, SideName},
     },
     maps::ColourMapName,
     optics::tier::Tier,
     shot::{Darkroom, Picture},
+    stage::TABLE,
 };
 
 use crate::{crop, room};
@@ -37,7 +38,7 @@ impl Compared {
         let mut scene = exhibit.scene("two-inks").expect("a scene").1.clone();
         scene.compare = Some(Comparison::new(
             mode,
-            vec![Member::State(0), Member::State(1)],
+            vec![Member::State(Some(0)), Member::State(Some(1))],
         ));
         Self {
             room: room::darkroom(1),
@@ -191,6 +192,25 @@ fn a_blend_mixes_light_and_a_difference_measures_it() {
     assert!(room::largest_difference(&found, &coded(10.0)) < STEP);
     assert!(room::largest_difference(&found, &coded(11.0)) > STEP);
     assert!(!found.legend.is_empty() && found.legend.iter().any(|texel| texel[3] > 0.0));
+}
+
+#[test]
+fn around_a_difference_lies_the_table() {
+    let mut compared = Compared::new(CompareMode::Difference);
+    let size_mm = compared.exhibit.drawing_of(&compared.scene).size_mm;
+    compared.scene.camera = Camera::whole_sheet(size_mm);
+    compared.scene.camera.width_mm *= 2.0;
+    let of_both = [compared.picture(), {
+        compared.comparison().coded = false;
+        compared.picture()
+    }];
+    let [colours, numbers] = of_both.map(|picture| picture.pixels[0]);
+    assert!(
+        colours.iter().all(|v| (v - TABLE).abs() < 1e-6),
+        "{colours:?}"
+    );
+    // As numbers there is none.
+    assert!(numbers.iter().all(|v| *v == 0.0), "{numbers:?}");
 }
 
 /// The bound.

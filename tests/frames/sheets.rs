@@ -84,7 +84,7 @@ fn turning_the_leaf_lays_the_verso_s_ink_on_its_own_residue() {
         // Beyond chance, and within a reduced pixel and a half of where the sheet was turned to.
         assert!(z > 7.0, "{own:?}");
         assert!(
-            dx.abs() <= SHRINK + SHRINK / 2 && dy.abs() <= SHRINK,
+            dx.abs() <= f64::from(SHRINK + SHRINK / 2) && dy.abs() <= f64::from(SHRINK),
             "{own:?}"
         );
     }

@@ -90,7 +90,10 @@ fn every_scene_is_the_same_when_it_is_read_again() {
 /// A scene in which everything is unlike what it is by itself.
 fn strange(exhibit: &Exhibit, mode: CompareMode) -> Scene {
     let mut scene = called(exhibit.scene("washes").unwrap().1, "strange");
-    let of = vec![Member::State(0), Member::Side(SideName::Verso)];
+    let of = match mode {
+        CompareMode::Glass => vec![Member::Side(SideName::Verso), Member::Side(SideName::Recto)],
+        _ => vec![Member::State(None), Member::Side(SideName::Verso)],
+    };
     scene.compare = Some(Comparison {
         at: 1.0 / 3.0,
         angle: Degrees(-0.1 - 0.2),
@@ -134,6 +137,10 @@ fn every_mode_of_comparison_is_the_same_when_it_is_read_again() {
     }
 }
 
+fn compared(scene: &mut Scene) -> &mut Comparison {
+    scene.compare.as_mut().unwrap()
+}
+
 #[test]
 fn scenes_that_differ_in_anything_are_told_apart() {
     let folder = Folder::with(FULL);
@@ -152,6 +159,9 @@ fn scenes_that_differ_in_anything_are_told_apart() {
     assert!(other(|scene| scene.language = None));
     assert!(other(|scene| scene.state = None));
     assert!(other(|scene| scene.compare = None));
+    assert!(other(|scene| compared(scene).at = 0.3));
+    // What a curtain does not use is not told apart.
+    assert!(!other(|scene| compared(scene).radius = 0.3));
     assert!(other(|scene| scene.transmitted = 0.0));
     assert!(other(|scene| scene.enhance.sharpen = 0.0));
     let mut moved = exhibit.clone();
@@ -247,7 +257,7 @@ fn whatever_number_there_is_is_kept_to_its_last_digit() {
             scene.ambient.illuminance = Lux(room);
             scene.lamps = vec![0];
             let (at, azimuth, elevation) = rest;
-            scene.compare.as_mut().unwrap().radius = at;
+            scene.compare.as_mut().unwrap().radius = f64::max(at, 0.01);
             exhibit.lamps[0].kind = LampKind::Distant {
                 illuminance: Lux(lux),
                 elevation: Degrees(elevation),

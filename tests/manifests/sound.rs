@@ -163,8 +163,8 @@ fn every_key_arrives() {
     assert_eq!(
         compare.of,
         [
-            Member::State(0),
-            Member::State(1),
+            Member::State(Some(0)),
+            Member::State(Some(1)),
             Member::Side(SideName::Verso),
             Member::Overlay(0),
             Member::Drawing(1)
@@ -441,14 +441,124 @@ fn how_well_control_points_agree_is_known() {
     assert!((corner - DVec2::ONE).length() < 1e-9, "{corner}");
 }
 
+/// Twelve points of a picture of 20 × 10 pixels that just covers the sheet of 200 × 100 mm, in rows of
+/// four, each changed by `change` (its place in the picture and on the sheet).
+fn twelve(change: impl Fn(usize, &mut DVec2, &mut DVec2)) -> String {
+    let points = (0..12).map(|i| {
+        let mut mm = DVec2::new(10.0 + 60.0 * (i % 4) as f64, 10.0 + 40.0 * (i / 4) as f64);
+        let mut px = mm / 10.0;
+        change(i, &mut px, &mut mm);
+        format!(
+            "{{ picture = [{}, {}], sheet_mm = [{}, {}] }}",
+            px.x, px.y, mm.x, mm.y
+        )
+    });
+    let points: Vec<String> = points.collect();
+    format!("{SMALL}recto.control_points = [{}]\n", points.join(", "))
+}
+
+#[test]
+fn control_points_at_odds_are_warned_of_and_small_errors_are_not() {
+    // A pixel is 10 mm here, and nobody reads better than to two of them.
+    let odd = |off: f64, fit: &str| {
+        let manifest = twelve(|i, _, mm| mm.x += if i == 6 { off } else { 0.1 * (i % 3) as f64 });
+        warnings(&(manifest + fit))
+    };
+    for fit in [
+        "",
+        "recto.fit = \"similarity\"\n",
+        "recto.fit = \"thin-plate\"\n",
+    ] {
+        assert_eq!(odd(0.0, fit), [""; 0], "{fit}");
+        assert_eq!(odd(3.0, fit), [""; 0], "{fit}");
+        let [warning] = &odd(25.0, fit)[..] else {
+            panic!("{:?}", odd(25.0, fit));
+        };
+        let place = "drawing[0].recto.control_points[6]: found point 7 ";
+        assert!(warning.contains(place), "{warning}");
+        assert!(
+            warning.contains(" mm from where the others put it; allowed: about 0.")
+                && warning.contains("correct its picture or sheet_mm, or remove it"),
+            "{warning}"
+        );
+    }
+    // Of few points none can be told to be the wrong one.
+    let corners = |px: &str| {
+        let points = CORNERS.replace("[0, 10], sheet", px);
+        warnings(&format!("{SMALL}recto.control_points = [{points}]\n"))
+    };
+    assert_eq!(corners("[1, 10], sheet"), [""; 0]);
+    let [warning] = &corners("[5, 10], sheet")[..] else {
+        panic!("{:?}", corners("[5, 10], sheet"));
+    };
+    assert!(
+        warning.contains("control_points: found points that put each other")
+            && warning.contains("allowed: up to 2"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn control_points_beside_the_picture_or_the_sheet_are_warned_of() {
+    assert_eq!(warnings(&twelve(|_, _, _| ())), [""; 0]);
+    // A picture of the sheet on a table.
+    let margin = twelve(|_, px, mm| *mm = (*px - 1.0) * 12.0);
+    assert_eq!(warnings(&margin), [""; 0]);
+    let larger = twelve(|_, px, _| *px *= 1.5);
+    let [warning] = &warnings(&larger)[..] else {
+        panic!("{:?}", warnings(&larger));
+    };
+    assert!(
+        warning.contains(
+            "control_points[3].picture: found points 4, 8, 9, 10, 11 and 1 more, the first outside the \
+             picture, at 28.5, 1.5 px; allowed: 0 to 20 px and 0 to 10 px"
+        ),
+        "{warning}"
+    );
+    let beside = twelve(|_, _, mm| mm.x += 40.0);
+    let [warning] = &warnings(&beside)[..] else {
+        panic!("{:?}", warnings(&beside));
+    };
+    assert!(
+        warning.contains(
+            "control_points[3].sheet_mm: found points 4, 8, 12, the first beside the sheet, at 230, 10 mm; \
+             allowed: about 0 to 200 mm and 0 to 100 mm"
+        ),
+        "{warning}"
+    );
+}
+
+#[test]
+fn a_state_is_compared_with_none() {
+    let compared = |member: &str| {
+        let exhibit = read(&format!(
+            "{SMALL}[[drawing.state]]\nid = \"before\"\nrecto.albedo = \"grey.png\"\n\
+             [[scene]]\nid = \"view\"\nstate = \"before\"\n\
+             compare = {{ mode = \"blend\", of = [\"state:before\", \"{member}\"] }}\n"
+        ));
+        let scene = &exhibit.scenes[0];
+        let states: Vec<_> = exhibit.members(scene).iter().map(|m| m.state).collect();
+        (scene.compare.as_ref().unwrap().of.clone(), states)
+    };
+    let (of, states) = compared("state:none");
+    assert_eq!(of, [Member::State(Some(0)), Member::State(None)]);
+    assert_eq!(states, [Some(0), None]);
+    // Another member stays in the scene's own state.
+    assert_eq!(compared("side:recto").1, [Some(0), Some(0)]);
+}
+
 #[test]
 fn a_stack_is_its_bands_and_what_is_made_of_them() {
+    // small.png has half as many pixels each way.
+    let corners = CORNERS
+        .replace("[20,", "[10,")
+        .replace(" 10], sheet", " 5], sheet");
     let exhibit = read(&format!(
         "{SMALL}[[drawing.overlay]]\nid = \"map\"\nfile = \"recto.png\"\nkind = \"picture\"\n\
          [[drawing.stack]]\nid = \"light\"\ntitle = {{ en = \"Light\", it = \"Luce\" }}\n\
          bands = [ {{ file = \"grey.png\", wavelength_nm = 850.5 }}, \
          {{ file = \"recto.png\", wavelength_nm = 550 }}, \
-         {{ file = \"small.png\", wavelength_nm = 450, control_points = [{CORNERS}], \
+         {{ file = \"small.png\", wavelength_nm = 450, control_points = [{corners}], \
          fit = \"thin-plate\" }} ]\n\
          false_colour = [ {{ id = \"ir\", red = {{ \"850.5\" = 1 }}, green = {{ 550 = 0.5, 450 = 0.5 }}, \
          blue = {{ 550 = 1 }} }} ]\n\

@@ -52,7 +52,10 @@ fn the_versos_ink_shows_through_its_own_recto_only() {
     for (z, [dx, dy]) in own {
         assert!(z > 7.0, "{own:?}");
         // Within a reduced pixel.
-        assert!((112..=123).contains(&dx) && dy.abs() <= SHRINK, "{own:?}");
+        assert!(
+            (112.0..=123.0).contains(&dx) && dy.abs() <= f64::from(SHRINK),
+            "{own:?}"
+        );
     }
     assert!(wrong.iter().all(|&(z, _)| z < 5.0), "{wrong:?}");
 }

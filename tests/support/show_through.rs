@@ -61,48 +61,80 @@ impl Page {
     }
 }
 
+/// Side of a patch in reduced pixels: 600 of the scan, 38 mm.
+const SIDE: usize = 600 / SHRINK as usize;
+
 /// How far beyond chance the best shift of the verso under a patch of the recto correlates (in
-/// standard deviations over all shifts), and that shift in full pixels.
-pub fn best_shift(recto: &Page, verso: &Page, left: usize, top: usize) -> (f64, [i32; 2]) {
-    const SIDE: usize = 600 / SHRINK as usize;
-    const REACH: i32 = 200 / SHRINK;
-    // The recto's own ink is far darker than what shows through: it is noise here, so it is cut.
-    const RESIDUE: f32 = 0.03;
-    let patch: Vec<f32> = (0..SIDE * SIDE)
-        .map(|i| recto.values[(top + i / SIDE) * recto.width + left + i % SIDE])
-        .map(|v| v.clamp(-RESIDUE, RESIDUE))
-        .collect();
-    let shifts: Vec<[i32; 2]> = (-REACH / 4..=REACH / 4)
-        .flat_map(|dy| (-REACH..=REACH).map(move |dx| [dx, dy]))
-        .collect();
-    let scores: Vec<f64> = shifts
-        .par_iter()
-        .map(|&[dx, dy]| {
-            let other: Vec<f32> = (0..SIDE * SIDE)
-                .map(|i| {
-                    let x = (left + i % SIDE) as i32 - dx;
-                    let y = (top + i / SIDE) as i32 - dy;
-                    let inside = (0..verso.width as i32).contains(&x)
-                        && (0..verso.height as i32).contains(&y);
-                    if inside {
-                        verso.values[y as usize * verso.width + x as usize]
-                    } else {
-                        0.0
-                    }
-                })
-                .collect();
-            correlation(&patch, &other)
-        })
-        .collect();
-    let mean = scores.iter().sum::<f64>() / scores.len() as f64;
-    let variance = scores.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / scores.len() as f64;
-    let best = (0..scores.len())
-        .max_by(|&a, &b| scores[a].total_cmp(&scores[b]))
-        .expect("some");
-    (
-        (scores[best] - mean) / variance.sqrt(),
-        shifts[best].map(|v| v * SHRINK),
-    )
+/// standard deviations over all shifts), and that shift in full pixels: between those looked at by
+/// a parabola through the peak and its neighbours, and NaN at the end of the reach.
+pub fn best_shift(recto: &Page, verso: &Page, left: usize, top: usize) -> (f64, [f64; 2]) {
+    let surface = Surface::new(recto, verso, left, top);
+    let (best, z) = surface.best();
+    let [dx, dy] = surface.shifts[best];
+    let score = |dx: i32, dy: i32| {
+        let found = surface.shifts.iter().position(|shift| *shift == [dx, dy]);
+        found.map_or(f64::NAN, |i| surface.scores[i])
+    };
+    let offset = |before: f64, after: f64| {
+        0.5 * (before - after) / (before - 2.0 * surface.scores[best] + after)
+    };
+    let fine = [
+        f64::from(dx) + offset(score(dx - 1, dy), score(dx + 1, dy)),
+        f64::from(dy) + offset(score(dx, dy - 1), score(dx, dy + 1)),
+    ];
+    (z, fine.map(|v| v * f64::from(SHRINK)))
+}
+
+/// Correlation of a patch at every shift within reach, in reduced pixels.
+struct Surface {
+    shifts: Vec<[i32; 2]>,
+    scores: Vec<f64>,
+}
+
+impl Surface {
+    fn new(recto: &Page, verso: &Page, left: usize, top: usize) -> Self {
+        const REACH: i32 = 200 / SHRINK;
+        // The recto's own ink is far darker than what shows through: it is noise here, so it is cut.
+        const RESIDUE: f32 = 0.03;
+        let patch: Vec<f32> = (0..SIDE * SIDE)
+            .map(|i| recto.values[(top + i / SIDE) * recto.width + left + i % SIDE])
+            .map(|v| v.clamp(-RESIDUE, RESIDUE))
+            .collect();
+        let shifts: Vec<[i32; 2]> = (-REACH / 4..=REACH / 4)
+            .flat_map(|dy| (-REACH..=REACH).map(move |dx| [dx, dy]))
+            .collect();
+        let scores: Vec<f64> = shifts
+            .par_iter()
+            .map(|&[dx, dy]| {
+                let other: Vec<f32> = (0..SIDE * SIDE)
+                    .map(|i| {
+                        let x = (left + i % SIDE) as i32 - dx;
+                        let y = (top + i / SIDE) as i32 - dy;
+                        let inside = (0..verso.width as i32).contains(&x)
+                            && (0..verso.height as i32).contains(&y);
+                        if inside {
+                            verso.values[y as usize * verso.width + x as usize]
+                        } else {
+                            0.0
+                        }
+                    })
+                    .collect();
+                correlation(&patch, &other)
+            })
+            .collect();
+        Self { shifts, scores }
+    }
+
+    /// The place of the highest, and how far it is beyond chance.
+    fn best(&self) -> (usize, f64) {
+        let scores = &self.scores;
+        let mean = scores.iter().sum::<f64>() / scores.len() as f64;
+        let variance = scores.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / scores.len() as f64;
+        let best = (0..scores.len())
+            .max_by(|&a, &b| scores[a].total_cmp(&scores[b]))
+            .expect("some");
+        (best, (scores[best] - mean) / variance.sqrt())
+    }
 }
 
 /// Arithmetic mean.

@@ -3,7 +3,10 @@
 use serde_json::Value;
 
 use super::{
-    super::{document::Words, fault::quoted_list},
+    super::{
+        document::Words,
+        fault::{quote, quoted_list},
+    },
     Node, Report,
 };
 
@@ -18,10 +21,16 @@ pub enum Rule {
     AtLeastOne(&'static [&'static str]),
     /// The first key is only there with the second.
     Needs(&'static str, &'static str),
+    /// The first key is only there where the second is one of these words.
+    OnlyWith(&'static str, &'static str, &'static [&'static str]),
 }
 
 impl Rule {
     pub(super) fn check(self, node: &Node<'_>, report: &mut Report<'_>) {
+        let trail = match self {
+            Self::OnlyWith(key, ..) => node.trail.key(key),
+            _ => node.trail.clone(),
+        };
         let present = |keys: &[&'static str]| -> Vec<&'static str> {
             keys.iter()
                 .copied()
@@ -48,9 +57,19 @@ impl Rule {
                 "both together".to_owned(),
                 format!("add \"{other}\""),
             ),
+            Self::OnlyWith(key, other, words) if node.get(key).is_some() => {
+                match node.get(other).and_then(|node| node.text()) {
+                    Some(word) if !words.contains(&word) => (
+                        format!("a key that {other} {} does not use", quote(word)),
+                        format!("it with {}", quoted_list(words.iter().copied())),
+                        "remove it".to_owned(),
+                    ),
+                    _ => return,
+                }
+            }
             _ => return,
         };
-        report.fault(&node.trail, Words::new(found, allowed, remedy));
+        report.fault(&trail, Words::new(found, allowed, remedy));
     }
 
     /// The rule as a JSON Schema of any draft.
@@ -67,6 +86,12 @@ impl Rule {
                 serde_json::json!({ "oneOf": choices })
             }
             Self::Needs(key, other) => serde_json::json!({ "anyOf": [lacks(key), has(other)] }),
+            Self::OnlyWith(key, other, words) => serde_json::json!({
+                "anyOf": [lacks(key), { "properties": { other: {
+                    "enum": words,
+                    "description": format!("What goes with {key}."),
+                } } }],
+            }),
         }
     }
 }

@@ -31,22 +31,27 @@ pub fn parts(spec: &str) -> impl Iterator<Item = &str> {
     .map(str::trim)
 }
 
-/// The table that `parts`, each `key=value`, stand for.
+/// The table that `parts`, each `key=value` such as `example`, stand for.
 pub fn table<'s>(
     option: &str,
+    example: &str,
     parts: impl IntoIterator<Item = &'s str>,
 ) -> Result<Table, Vec<Fault>> {
     let mut table = Table::new();
     let mut faults = Vec::new();
     for part in parts {
         let Some((key, text)) = part.split_once('=') else {
-            let remedy = "write the keys that the manifest has, such as tilt_deg=30";
-            faults.push(fault(option, quote(part), "key=value,key=value…", remedy));
+            let found = match part {
+                "" => "nothing".to_owned(),
+                part => quote(part),
+            };
+            let remedy = format!("write the keys that the manifest has, such as {example}");
+            faults.push(unreadable(option, found, "key=value,key=value…", remedy));
             continue;
         };
         if table.insert(key.trim().to_owned(), value(text)).is_some() {
             let found = format!("{} a second time", quote(key));
-            faults.push(fault(
+            faults.push(unreadable(
                 option,
                 found,
                 "each key once",
@@ -68,6 +73,10 @@ pub fn value(text: &str) -> Value {
     let numbers: Option<Vec<f64>> = text.split('x').map(|part| part.parse().ok()).collect();
     match numbers {
         Some(numbers) if numbers.len() > 1 => numbers.into(),
+        // A fraction as people write it, which TOML wants a 0 before.
+        _ if text.trim_start_matches(['-', '+']).starts_with('.') => text
+            .parse::<f64>()
+            .map_or_else(|_| Value::from(text), Value::from),
         _ => text.parse().unwrap_or_else(|_| Value::from(text)),
     }
 }
@@ -78,7 +87,7 @@ pub fn decode<T: Decode>(option: &str, value: Value) -> Result<T, Vec<Fault>> {
     read(KEY, value, |root, report| {
         root.get(KEY).and_then(|node| T::decode(&node, report))
     })
-    .map_err(|found| relabelled(found, KEY, option))
+    .map_err(|found| relabelled(found, KEY, option, true))
 }
 
 /// Validates a manifest that has nothing but `value` at `key`, in the folder of `exhibit`. Faults
@@ -90,6 +99,7 @@ pub fn validated(
     place: &str,
     exhibit: &Exhibit,
 ) -> Result<Exhibit, Vec<Fault>> {
+    let mut is_read = false;
     read(key, value, |root, report| {
         let raw = RawManifest {
             drawing: List::from_iter([]),
@@ -100,9 +110,10 @@ pub fn validated(
             tour: None,
             accuracy: None,
         };
+        is_read = report.mark() == 0;
         validate::exhibit(&raw, &exhibit.manifest, &exhibit.folder, report)
     })
-    .map_err(|found| relabelled(found, place, option))
+    .map_err(|found| relabelled(found, place, option, !is_read))
 }
 
 fn read<T>(
@@ -126,8 +137,9 @@ fn read<T>(
 }
 
 /// Faults within `place` as faults of `option`, which has no file.
-fn relabelled(mut faults: Vec<Fault>, place: &str, option: &str) -> Vec<Fault> {
+fn relabelled(mut faults: Vec<Fault>, place: &str, option: &str, unreadable: bool) -> Vec<Fault> {
     for fault in &mut faults {
+        fault.unreadable = unreadable;
         fault.file = None;
         fault.place = None;
         if let Some(rest) = fault.path.strip_prefix(place) {
@@ -135,6 +147,19 @@ fn relabelled(mut faults: Vec<Fault>, place: &str, option: &str) -> Vec<Fault> {
         }
     }
     faults
+}
+
+/// A fault of the option `path` whose value cannot be read.
+pub fn unreadable(
+    path: &str,
+    found: impl Into<String>,
+    allowed: impl Into<String>,
+    remedy: impl Into<String>,
+) -> Fault {
+    Fault {
+        unreadable: true,
+        ..fault(path, found, allowed, remedy)
+    }
 }
 
 /// A fault of the option `path`.
@@ -152,5 +177,6 @@ pub fn fault(
         found: found.into(),
         allowed: allowed.into(),
         remedy: remedy.into(),
+        unreadable: false,
     }
 }

@@ -186,7 +186,7 @@ fn all_faults_are_found_at_once() {
 
 #[test]
 fn faults_say_what_is_there_and_what_was_meant() {
-    let cases: [(Overrides, &[&str]); 7] = [
+    let cases: [(Overrides, &[&str]); 10] = [
         (
             Overrides {
                 scene: text("neer"),
@@ -261,9 +261,124 @@ fn faults_say_what_is_there_and_what_was_meant() {
                  remove one of the two",
             ],
         ),
+        (
+            Overrides {
+                enhance: text(""),
+                ..Overrides::default()
+            },
+            &[
+                "--enhance: found nothing; allowed: key=value,key=value…; write the keys that the \
+                 manifest has, such as exaggerate=3",
+            ],
+        ),
+        (
+            Overrides {
+                overlays: vec!["infrared:".into()],
+                ..Overrides::default()
+            },
+            &[
+                "--overlay: found \"infrared:\", a colon and no category; allowed: \
+                 ID[=OPACITY][:CATEGORY,…]; name the categories to be shown, or leave the colon out to \
+                 show all of them",
+            ],
+        ),
+        (
+            Overrides {
+                compare: text("glass:state:before,state:none"),
+                ..Overrides::default()
+            },
+            &[
+                "--compare: found members that are not the two sides of the sheet; allowed: side:recto \
+                 and side:verso for glass; change them, or choose another mode",
+            ],
+        ),
     ];
     for (overrides, expected) in cases {
         assert_eq!(faults(overrides), expected);
+    }
+}
+
+#[test]
+fn what_cannot_be_read_is_told_from_what_is_not_there() {
+    let unreadable = |overrides: Overrides| {
+        let faults = overrides.apply(exhibit(), 1000).unwrap_err();
+        faults
+            .iter()
+            .map(|fault| fault.unreadable)
+            .collect::<Vec<_>>()
+    };
+    let usual = Overrides::default;
+    for overrides in [
+        Overrides {
+            transmitted: Some(2.0),
+            ..usual()
+        },
+        Overrides {
+            enhance: text("sharpen=2"),
+            ..usual()
+        },
+        Overrides {
+            enhance: text("stretch=[0.5,0.5]"),
+            ..usual()
+        },
+        Overrides {
+            overlays: vec!["infrared=2".into()],
+            ..usual()
+        },
+        Overrides {
+            lamps: vec!["kind=pint".into()],
+            ..usual()
+        },
+        Overrides {
+            camera: text("tilt"),
+            ..usual()
+        },
+        Overrides {
+            compare: text("curtain"),
+            ..usual()
+        },
+        Overrides {
+            compare: text("loupe:side:recto,side:verso,at=0.5"),
+            ..usual()
+        },
+        Overrides {
+            language: text("?"),
+            ..usual()
+        },
+    ] {
+        assert_eq!(unreadable(overrides.clone()), [true], "{overrides:?}");
+    }
+    for overrides in [
+        Overrides {
+            scene: text("x"),
+            ..usual()
+        },
+        Overrides {
+            state: text("x"),
+            ..usual()
+        },
+        Overrides {
+            overlays: vec!["x".into()],
+            ..usual()
+        },
+        Overrides {
+            lamps: vec!["x".into()],
+            ..usual()
+        },
+        Overrides {
+            compare: text("blend:state:x,side:recto"),
+            ..usual()
+        },
+        Overrides {
+            lamps: vec![
+                "kind=distant,lux_at_sheet=1,elevation_deg=40,azimuth_deg=0,\
+                                 spectrum={file=\"none.csv\"}"
+                    .into(),
+            ],
+            ..usual()
+        },
+    ] {
+        assert_eq!(unreadable(overrides.clone()), [false], "{overrides:?}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{
     super::{
-        decode::{Brief, List},
+        decode::{Brief, List, Rule},
         exhibit::{
             CompareMode, Comparison, Enhancement, MAX_LAMPS, MAX_OVERLAYS, Member, SideName,
         },
@@ -11,8 +11,8 @@ use super::{
     RawWording,
     values::{
         DeltaE, DistanceMm, Exaggeration, Fraction, Id, LampLux, Language, LayerName, Level,
-        Magnification, MemberText, PlaceMm, RoomLux, Seconds, Temperature, Text, TiltDeg, TurnDeg,
-        ViewMm,
+        LoupeRadius, Magnification, MemberText, PlaceMm, RoomLux, Seconds, Temperature, Text,
+        TiltDeg, TurnDeg, ViewMm,
     },
 };
 use crate::units::Degrees;
@@ -87,13 +87,13 @@ record! {
         required {
             /// How the members are shown against each other.
             mode: CompareMode,
-            /// The members, such as state:before, side:verso, overlay:damage, band:stack/700,
-            /// drawing:landscape.
+            /// The members, such as state:before, state:none (the sheet as its sides describe it),
+            /// side:verso, overlay:damage, band:stack/700, drawing:landscape.
             of: List<MemberText, 2, 8>,
         }
         optional {
             /// Where a curtain hangs, 0 to 1 of the way across, or how much of the second member a
-            /// blend shows. Without it: half.
+            /// blend or glass shows. Without it: half.
             at: Fraction,
             /// The way across a curtain, in degrees anticlockwise from the right. Without it: 0, a
             /// curtain that is drawn sideways.
@@ -102,7 +102,7 @@ record! {
             /// Without it: the middle.
             centre: [Fraction; 2],
             /// The radius of a loupe as a share of the picture's height. Without it: a quarter.
-            radius: Fraction,
+            radius: LoupeRadius,
             /// How much larger a loupe shows its member. Without it: twice.
             magnify: Magnification,
             /// The ΔE00 that a difference shows at the top of its scale. Without it: 10.
@@ -111,7 +111,16 @@ record! {
             /// top of its scale. Without it: the difference is in ΔE00.
             full_luminance: Level,
         }
-        rules []
+        rules [
+            Rule::AtMostOne(&["full_delta_e", "full_luminance"]),
+            Rule::OnlyWith("at", "mode", &["curtain", "blend", "glass"]),
+            Rule::OnlyWith("angle_deg", "mode", &["curtain"]),
+            Rule::OnlyWith("centre", "mode", &["loupe"]),
+            Rule::OnlyWith("radius", "mode", &["loupe"]),
+            Rule::OnlyWith("magnify", "mode", &["loupe"]),
+            Rule::OnlyWith("full_delta_e", "mode", &["difference"]),
+            Rule::OnlyWith("full_luminance", "mode", &["difference"]),
+        ]
     }
 }
 
@@ -165,7 +174,7 @@ impl RawCompare {
             at: share(self.at, usual.at),
             angle: Degrees(self.angle_deg.map_or(usual.angle.0, |angle| angle.0)),
             centre: centre.unwrap_or(usual.centre),
-            radius: share(self.radius, usual.radius),
+            radius: self.radius.map_or(usual.radius, |radius| radius.0),
             magnify: self.magnify.map_or(usual.magnify, |magnify| magnify.0),
             full_delta_e: self.full_delta_e.map_or(usual.full_delta_e, |e| e.0),
             full_luminance: self.full_luminance.map(|level| level.0),

@@ -83,6 +83,8 @@ number! {
     Scale = 0.01 ..= 100.0, "";
     /// How much larger something is shown.
     Magnification = 1.0 ..= 20.0, "";
+    /// The radius of a loupe as a share of a picture's height.
+    LoupeRadius = 0.01 ..= 1.0, "";
     /// A value of a measured quantity in its own unit.
     Quantity = -1000000000.0 ..= 1000000000.0, "";
     /// A duration.

@@ -274,6 +274,24 @@ impl Exhibit {
         Some(LampsFor { ids, new })
     }
 
+    /// A scene as a manifest has it, its lamps by their ids. `None` where something in it has no
+    /// written form.
+    pub fn written_scene(&self, scene: &Scene) -> Option<RawScene> {
+        let lamps = scene.lamps.iter();
+        let ids: Option<Vec<Id>> = lamps
+            .map(|lamp| Id::from_text(&self.lamps[*lamp].id))
+            .collect();
+        written::scene(self, scene, &ids?)
+    }
+
+    /// The lamps of a scene as a manifest has them. `None` as above.
+    pub fn written_lamps(&self, scene: &Scene) -> Option<Vec<RawLamp>> {
+        let lamps = scene.lamps.iter();
+        lamps
+            .map(|lamp| written::same_lamp(&self.lamps[*lamp]))
+            .collect()
+    }
+
     /// Whether this exhibit has a scene that is the same as `scene` of `other`, in the same light.
     pub fn has(&self, scene: &Scene, other: &Self) -> bool {
         let Some((_, mine)) = self.scene(&scene.id) else {
@@ -288,8 +306,8 @@ impl Exhibit {
         same_light
             && Scene {
                 lamps,
-                ..mine.clone()
-            } == *scene
+                ..mine.as_shown()
+            } == scene.as_shown()
     }
 }
 

@@ -8,7 +8,7 @@ use super::super::{
     decode::{Brief, Dictionary, List, Pattern, Record},
     exhibit::{
         Ambient, Camera, CompareMode, Comparison, Drawing, Enhancement, Exhibit, Exposure, Lamp,
-        LampColour, LampKind, Member, Overlay, OverlayKind, Scene, Wording,
+        LampColour, LampKind, Overlay, OverlayKind, Scene, Wording,
     },
     raw::{
         RawAmbient, RawCamera, RawCompare, RawEnhance, RawExposure, RawLamp, RawScene,
@@ -19,8 +19,8 @@ use super::super::{
         },
         values::{
             ConeDeg, DeltaE, DistanceMm, ElevationDeg, Exaggeration, Fraction, Id, LampCandela,
-            LampLux, LampMm, LampNits, Language, LayerName, Level, Magnification, MemberText,
-            PlaceMm, PositionMm, RoomLux, Temperature, Text, TiltDeg, TurnDeg, ViewMm,
+            LampLux, LampMm, LampNits, Language, LayerName, Level, LoupeRadius, Magnification,
+            MemberText, PlaceMm, PositionMm, RoomLux, Temperature, Text, TiltDeg, TurnDeg, ViewMm,
         },
     },
     validate::DAYLIGHT_K,
@@ -133,30 +133,24 @@ fn comparison(exhibit: &Exhibit, drawing: &Drawing, comparison: &Comparison) -> 
         coded: _,
         turn: _,
     } = comparison;
-    let usual = Comparison::new(*mode, Vec::new());
-    let of = of.iter().map(|member| {
-        MemberText::from_text(&match member {
-            Member::State(state) => format!("state:{}", drawing.states[*state].id),
-            Member::Side(side) => format!("side:{}", side.word()),
-            // Also of a stack: STACK/700.
-            Member::Overlay(overlay) => format!("overlay:{}", drawing.overlays[*overlay].id),
-            Member::Drawing(drawing) => format!("drawing:{}", exhibit.drawings[*drawing].id),
-        })
-    });
-    // What a mode uses is always written, so that it stays what it is whatever is usual later.
-    let uses = |modes: &[CompareMode], unusual: bool| modes.contains(mode) || unusual;
-    use CompareMode::{Blend, Curtain, Difference, Loupe};
+    let of = of
+        .iter()
+        .map(|member| MemberText::from_text(&exhibit.written_member(drawing, *member)));
+    // What a mode uses is always written, so that it stays what it is whatever is usual later, and
+    // what it does not use never.
+    let is = |modes: &[CompareMode]| modes.contains(mode);
+    use CompareMode::{Blend, Curtain, Difference, Glass, Loupe};
+    let in_delta_e = is(&[Difference]) && full_luminance.is_none();
     Some(RawCompare {
         mode: *mode,
         of: of.collect::<Option<Vec<_>>>()?.into_iter().collect(),
-        at: uses(&[Curtain, Blend], *at != usual.at).then_some(Fraction(*at)),
-        angle_deg: uses(&[Curtain], *angle != usual.angle).then_some(TurnDeg(angle.0)),
-        centre: uses(&[Loupe], *centre != usual.centre).then(|| centre.to_array().map(Fraction)),
-        radius: uses(&[Loupe], *radius != usual.radius).then_some(Fraction(*radius)),
-        magnify: uses(&[Loupe], *magnify != usual.magnify).then_some(Magnification(*magnify)),
-        full_delta_e: uses(&[Difference], *full_delta_e != usual.full_delta_e)
-            .then_some(DeltaE(*full_delta_e)),
-        full_luminance: full_luminance.map(Level),
+        at: is(&[Curtain, Blend, Glass]).then_some(Fraction(*at)),
+        angle_deg: is(&[Curtain]).then_some(TurnDeg(angle.0)),
+        centre: is(&[Loupe]).then(|| centre.to_array().map(Fraction)),
+        radius: is(&[Loupe]).then_some(LoupeRadius(*radius)),
+        magnify: is(&[Loupe]).then_some(Magnification(*magnify)),
+        full_delta_e: in_delta_e.then_some(DeltaE(*full_delta_e)),
+        full_luminance: full_luminance.map(Level).filter(|_| is(&[Difference])),
     })
 }
 

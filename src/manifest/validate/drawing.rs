@@ -12,6 +12,7 @@ use super::{
             Drawing, FlipAxis, HeightMap, LegendEntry, MapFile, Overlay, OverlayKind, Side,
             SideName, SidePatch, Source, State, Surface, Wording,
         },
+        overrides::NO_STATE,
         raw::{
             RawCategorical, RawDrawing, RawOverlay, RawOverlayKind, RawSide, RawState, RawSurface,
         },
@@ -22,8 +23,6 @@ use super::{
     side::{Named, no_maps},
     stack,
 };
-/// The word by which a scene asks for no state.
-pub(super) const NO_STATE: &str = "none";
 
 impl Validator<'_, '_> {
     pub(super) fn drawing(

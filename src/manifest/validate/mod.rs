@@ -25,7 +25,6 @@ use names::Names;
 
 pub(crate) use files::{PICTURE, map_words};
 pub(super) use lamp::{DAYLIGHT_K, usual_lamps};
-pub(super) use scene::chosen;
 
 /// What all parts of the validation share.
 struct Validator<'r, 'd> {

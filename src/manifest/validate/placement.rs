@@ -16,12 +16,25 @@ use super::super::{
 use super::Validator;
 use crate::maps::{
     Warp,
-    registration::{FitKind, Fitted, RegistrationError},
+    registration::{AtOdds, FitKind, Fitted, RegistrationError, is_beside},
 };
 
 /// How far a picture's proportions may be from the sheet's without a word: less than a scan
 /// loses at its edges.
 const ASPECT_TOLERANCE: f64 = 0.02;
+
+/// How far beside the sheet a control point may lie without a word, as a share of the sheet's size:
+/// pictures show some of what the sheet lies on.
+const BESIDE_TOLERANCE: f64 = 0.1;
+/// Control points that agree less well than within this share of the sheet's diagonal are not of one
+/// sheet: paper cockles, and lenses distort, by less.
+const AGREEMENT: f64 = 0.01;
+/// Control points are read no better than this, in pixels of their picture,
+const READ_PX: f64 = 2.0;
+/// and this, in mm on the sheet.
+const READ_MM: f64 = 0.5;
+/// How many control points a warning names.
+const MOST_NAMED: usize = 5;
 
 /// What the manifest says of a picture's place.
 #[derive(Clone, Copy)]
@@ -107,11 +120,24 @@ impl Validator<'_, '_> {
                 left_out: None,
             });
         }
+        let uv_from_side = placement.register.map_or_else(
+            || DAffine2::from_scale(sheet_mm.recip()),
+            |register| by_register(register, sheet_mm),
+        );
+        if is_beside(uv_from_side, sheet_mm) {
+            let words = Words::new(
+                "a place that puts the whole picture beside the sheet",
+                format!(
+                    "a picture that covers some of the {} × {} mm",
+                    sheet_mm.x, sheet_mm.y
+                ),
+                "correct offset_mm, rotate_deg or scale",
+            );
+            self.report.fault(&placement.trail.key("register"), words);
+            return None;
+        }
         Some(Lie {
-            uv_from_side: placement.register.map_or_else(
-                || DAffine2::from_scale(sheet_mm.recip()),
-                |register| by_register(register, sheet_mm),
-            ),
+            uv_from_side,
             size: pixels,
             warp: None,
         })
@@ -136,16 +162,35 @@ impl Validator<'_, '_> {
         if points.has_holes() {
             return None;
         }
+        let trail = placement.trail.key("control_points");
         let error = match Fitted::new(&pairs, placement.fit, pixels, sheet_mm) {
-            Ok(fitted) => return Some(fitted),
+            Ok(fitted) => {
+                self.warn_of_points_beside(&pairs, sheet_mm, vector(pixels), &trail);
+                self.warn_of_points_at_odds(&fitted, &pairs, pixels, sheet_mm, &trail);
+                return Some(fitted);
+            }
             Err(error) => error,
         };
-        let trail = placement.trail.key("control_points");
-        let (trail, remedy) = match error {
-            RegistrationError::TooFew { .. } => (trail, "add points, or leave fit out"),
+        let apart = "points that lie apart and not on one line";
+        let (trail, allowed, remedy) = match error {
+            RegistrationError::TooFew { .. } => (trail, apart, "add points, or leave fit out"),
             RegistrationError::Doubled { second, .. } => (
                 trail.index(second - 1),
+                "each place once, in the picture and on the sheet",
                 "remove one of the two, or correct it",
+            ),
+            RegistrationError::Mirrored
+            | RegistrationError::Flattened
+            | RegistrationError::NoSimilarity => (
+                trail,
+                "places of which each is the same in the picture and on the side as it is seen, \
+                 both counted from the top left corner",
+                "correct the points; a file that is mirrored itself has to be mirrored back",
+            ),
+            RegistrationError::Beside => (
+                trail,
+                "a picture that covers some of the sheet",
+                "correct sheet_mm, which is counted from the top left corner of the side, or picture",
             ),
             RegistrationError::Folded { near_mm } => {
                 let near = DVec2::from(near_mm.map(f64::from));
@@ -154,17 +199,102 @@ impl Validator<'_, '_> {
                     off(*a).total_cmp(&off(*b))
                 });
                 let trail = nearest.map_or(trail.clone(), |i| trail.index(i));
-                (trail, "correct the points there, or leave fit out")
+                (
+                    trail,
+                    "points between which the picture only bends",
+                    "correct the points there, or leave fit out",
+                )
             }
-            _ => (trail, "choose points near the corners"),
+            _ => (trail, apart, "choose points near the corners"),
         };
         let words = Words::new(
             format!("points that do not place the picture ({error})"),
-            "points that lie apart and not on one line",
+            allowed,
             remedy,
         );
         self.report.fault(&trail, words);
         None
+    }
+
+    /// Warns of control points that are not in the picture, or far beside the sheet.
+    fn warn_of_points_beside(
+        &mut self,
+        points: &[(DVec2, DVec2)],
+        sheet_mm: DVec2,
+        pixels: DVec2,
+        trail: &Trail,
+    ) {
+        let beside = |at: DVec2, size: DVec2, margin: DVec2| {
+            at.cmplt(-margin).any() || at.cmpgt(size + margin).any()
+        };
+        let which = |is_one: &dyn Fn(&(DVec2, DVec2)) -> bool| -> Vec<usize> {
+            let points = points.iter().enumerate();
+            points
+                .filter_map(|(i, point)| is_one(point).then_some(i))
+                .collect()
+        };
+        let outside = which(&|(px, _)| beside(*px, pixels, DVec2::ZERO));
+        if let Some(&first) = outside.first() {
+            let DVec2 { x, y } = points[first].0;
+            let words = Words::new(
+                format!("{} outside the picture, at {x}, {y} px", named(&outside)),
+                format!("0 to {} px and 0 to {} px", pixels.x, pixels.y),
+                "count the pixels of this very file, from its top left corner: one that was reduced or \
+                 cropped has others",
+            );
+            self.report.warn(&trail.index(first).key("picture"), words);
+        }
+        let margin = sheet_mm * BESIDE_TOLERANCE;
+        let outside = which(&|(_, mm)| beside(*mm, sheet_mm, margin));
+        if let Some(&first) = outside.first() {
+            let DVec2 { x, y } = points[first].1;
+            let words = Words::new(
+                format!("{} beside the sheet, at {x}, {y} mm", named(&outside)),
+                format!("about 0 to {} mm and 0 to {} mm", sheet_mm.x, sheet_mm.y),
+                "measure in mm from the top left corner of the side",
+            );
+            self.report.warn(&trail.index(first).key("sheet_mm"), words);
+        }
+    }
+
+    /// Warns of points that contradict each other.
+    fn warn_of_points_at_odds(
+        &mut self,
+        fitted: &Fitted,
+        points: &[(DVec2, DVec2)],
+        pixels: [u32; 2],
+        sheet_mm: DVec2,
+        trail: &Trail,
+    ) {
+        let read_mm = READ_MM.max(READ_PX * mm_per_px(points));
+        let at_odds = fitted.at_odds(points, pixels, sheet_mm, read_mm);
+        if let Some(AtOdds { points, usual_mm }) = at_odds {
+            let (worst, mm) = points[0];
+            let which: Vec<usize> = points.iter().map(|(i, _)| *i).collect();
+            let words = Words::new(
+                format!("{} {mm:.2} mm from where the others put it", named(&which)),
+                format!("about {usual_mm:.2} mm, as is usual for these points"),
+                "correct its picture or sheet_mm, or remove it",
+            );
+            self.report.warn(&trail.index(worst), words);
+            return;
+        }
+        let Some(left_out) = fitted.left_out() else {
+            return;
+        };
+        let most_mm = read_mm.max(AGREEMENT * sheet_mm.length());
+        if left_out.rms_mm > most_mm {
+            let words = Words::new(
+                format!(
+                    "points that put each other {:.2} mm (root mean square) from where they are, point \
+                     {} the farthest",
+                    left_out.rms_mm, left_out.at_point
+                ),
+                format!("up to {most_mm:.1} mm on a sheet of this size"),
+                "correct the points, or add some, so that the wrong one shows",
+            );
+            self.report.warn(trail, words);
+        }
     }
 
     fn warn_of_proportions(&mut self, sheet_mm: DVec2, pixels: DVec2, picture: &Trail) {
@@ -215,6 +345,34 @@ impl Validator<'_, '_> {
             self.report.fault(&placement.trail.key("register"), words);
         }
     }
+}
+
+/// How large a pixel of a picture is on the sheet, by how far its control points lie apart.
+fn mm_per_px(points: &[(DVec2, DVec2)]) -> f64 {
+    let spread = |of: fn(&(DVec2, DVec2)) -> DVec2| {
+        let mean = points.iter().map(of).sum::<DVec2>() / points.len() as f64;
+        points
+            .iter()
+            .map(|point| (of(point) - mean).length_squared())
+            .sum::<f64>()
+            .sqrt()
+    };
+    spread(|point| point.1) / spread(|point| point.0)
+}
+
+/// `point 3`, or `points 3, 5 and 8 more, the first`, of indices from 0.
+fn named(points: &[usize]) -> String {
+    let number = |i: &usize| (i + 1).to_string();
+    let [only] = points else {
+        let listed: Vec<String> = points.iter().take(MOST_NAMED).map(number).collect();
+        let rest = points.len().saturating_sub(MOST_NAMED);
+        let more = match rest {
+            0 => String::new(),
+            _ => format!(" and {rest} more"),
+        };
+        return format!("points {}{more}, the first", listed.join(", "));
+    };
+    format!("point {}", number(only))
 }
 
 fn vector([x, y]: [u32; 2]) -> DVec2 {

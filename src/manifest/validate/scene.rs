@@ -1,6 +1,6 @@
 //! Scenes, with what they take over from each other, and tours.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use glam::DVec2;
 
@@ -9,10 +9,10 @@ use super::{
         decode::{Brief, List, Pattern},
         document::{Trail, Words},
         exhibit::{
-            Ambient, Camera, Comparison, Enhancement, Exposure, LegendEntry, Member, Scene,
-            SideName, Tour,
+            Ambient, Camera, Comparison, Enhancement, Exposure, Member, Scene, SideName, Tour,
         },
-        fault::{did_you_mean, quote, quoted_list},
+        overlay::chosen,
+        overrides::NO_STATE,
         raw::{
             RawManifest,
             scene::{
@@ -22,7 +22,7 @@ use super::{
         },
     },
     Validator,
-    drawing::{DrawingFacts, NO_STATE},
+    drawing::DrawingFacts,
     lamp::DAYLIGHT_K,
     names::Names,
 };
@@ -344,18 +344,12 @@ impl Validator<'_, '_> {
     ) -> Option<Vec<usize>> {
         let of_overlay = facts.legends.iter().find(|(i, _)| *i == index);
         let legend = of_overlay.map_or(&[][..], |(_, legend)| legend);
-        let mut indices = BTreeSet::new();
-        let mut complete = !list.has_holes();
-        for (i, name) in list.iter() {
-            match chosen(legend, name.as_str()) {
-                Ok(entry) => drop(indices.insert(entry)),
-                Err(words) => {
-                    self.report.fault(&trail.index(i), words);
-                    complete = false;
-                }
-            }
+        let (indices, faults) = chosen(legend, list.iter().map(|(i, name)| (i, name.as_str())));
+        let complete = faults.is_empty() && !list.has_holes();
+        for (i, words) in faults {
+            self.report.fault(&trail.index(i), words);
         }
-        complete.then(|| indices.into_iter().collect())
+        complete.then_some(indices)
     }
 
     fn comparison(
@@ -383,13 +377,8 @@ impl Validator<'_, '_> {
             }
             of.push(member);
         }
-        let mode = raw.mode;
-        if let Some(allowed) = mode.allowed_instead_of(of.len()).filter(|_| complete) {
-            let words = Words::new(
-                format!("{} members", of.len()),
-                allowed,
-                "remove some, or choose another mode",
-            );
+        if let Some((found, allowed)) = raw.mode.refuses(&of).filter(|_| complete) {
+            let words = Words::new(found, allowed, "change them, or choose another mode");
             self.report.fault(&trail.key("of"), words);
             return None;
         }
@@ -405,7 +394,11 @@ impl Validator<'_, '_> {
     ) -> Option<Member> {
         let (kind, id) = text.split_once(':')?;
         match kind {
-            "state" => self.resolve(id, &facts.states, trail).map(Member::State),
+            "state" if id == NO_STATE => Some(Member::State(None)),
+            "state" => {
+                let state = self.resolve(id, &facts.states, trail)?;
+                Some(Member::State(Some(state)))
+            }
             // What can be shown of a stack lies over the sheet as overlays do.
             "overlay" | "band" => self
                 .resolve(id, &facts.overlays, trail)
@@ -508,26 +501,6 @@ impl Validator<'_, '_> {
             stops: stops.into_iter().collect::<Option<_>>()?,
         })
     }
-}
-
-/// The entry of a legend that is called `name`.
-pub fn chosen(legend: &[LegendEntry], name: &str) -> Result<usize, Words> {
-    let found = legend.iter().position(|entry| entry.is_called(name));
-    found.ok_or_else(|| {
-        let names = || legend.iter().map(LegendEntry::name);
-        if legend.is_empty() {
-            return Words::new(
-                format!("the category {}", quote(name)),
-                "categories of an overlay that has some",
-                "leave categories out",
-            );
-        }
-        Words::new(
-            format!("the category {}", quote(name)),
-            quoted_list(names()),
-            did_you_mean(name, names(), "write one of these"),
-        )
-    })
 }
 
 fn ambient(raw: Option<&RawAmbient>) -> Ambient {

@@ -15,7 +15,7 @@ pub mod propose;
 
 use glam::{DAffine2, DMat2, DVec2};
 
-pub use fitted::{FitKind, Fitted, Residual};
+pub use fitted::{AtOdds, FitKind, Fitted, Residual, is_beside};
 
 /// One control point: a place in the picture in pixels (pixel centres at halves, y down) and the
 /// same place on the side in millimetres (y down).
@@ -44,12 +44,20 @@ pub enum RegistrationError {
     OneLine(Frame),
     #[error("the control points fit no similarity; are their places exchanged, or mirrored?")]
     NoSimilarity,
-    #[error("control points {first} and {second} lie in one place on the sheet; remove one")]
+    #[error("control points {first} and {second} lie in one place {}; remove one", of.place())]
     Doubled {
         /// Counted from 1, in the order given.
         first: usize,
         second: usize,
+        of: Frame,
     },
+    #[error(
+        "the control points mirror the picture; are places exchanged, or counted from the bottom \
+         or the right?"
+    )]
+    Mirrored,
+    #[error("the control points press the picture onto a line; are the places of two exchanged?")]
+    Flattened,
     #[error(
         "the transform folds the picture over near ({}, {}) mm on the sheet; \
          is a control point there misplaced?", near_mm[0], near_mm[1]
@@ -73,6 +81,15 @@ pub enum Frame {
     Sheet,
 }
 
+impl Frame {
+    fn place(self) -> &'static str {
+        match self {
+            Self::Picture => "in the picture",
+            Self::Sheet => "on the sheet",
+        }
+    }
+}
+
 impl std::fmt::Display for Frame {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -82,9 +99,15 @@ impl std::fmt::Display for Frame {
     }
 }
 
-/// Points whose spread in one direction is this small a share of that in another lie on a line:
-/// reading errors would then decide the transform.
+/// What is this small a share of what it is held against is nothing but rounding.
 const THIN: f64 = 1e-6;
+
+/// Points whose spread in one direction is this small a share of that in another lie on a line:
+/// reading errors, of half a pixel in a picture of a thousand, would then decide the transform.
+const LINE: f64 = 1e-3;
+
+/// Points are mirrored whose mirror image leaves this many times less of the squared residuals.
+const MIRRORED: f64 = 4.0;
 
 /// Shift, rotation and one scale from at least two control points, by least squares in the
 /// picture (J. C. Gower, *Psychometrika* 40 (1975) 33, in closed form for the plane).
@@ -195,11 +218,27 @@ impl Centred {
 
     fn spans_a_plane(&self) -> Result<(), RegistrationError> {
         for (frame, spread) in [(Frame::Picture, self.picture), (Frame::Sheet, self.sheet)] {
-            if spread.smallest() <= THIN * THIN * spread.largest() {
+            if spread.smallest() <= LINE * LINE * spread.largest() {
                 return Err(RegistrationError::OneLine(frame));
             }
         }
         Ok(())
+    }
+
+    /// Whether a mirror image fits the points far better than shift, rotation and scale do: of
+    /// two points, or of those on a line, either fits as well.
+    fn is_mirrored(&self, points: &[ControlPoint]) -> bool {
+        // As in `similarity`, and with conj(mm) in the place of mm.
+        let (mut upright, mut mirrored) = (DVec2::ZERO, DVec2::ZERO);
+        for (px, mm) in self.pairs(points) {
+            upright += DVec2::new(mm.dot(px), mm.perp_dot(px));
+            let mm = DVec2::new(mm.x, -mm.y);
+            mirrored += DVec2::new(mm.dot(px), mm.perp_dot(px));
+        }
+        let [picture, sheet] = [self.picture.sum(), self.sheet.sum()];
+        let left = |z: DVec2| picture - z.length_squared() / sheet;
+        let [upright, mirrored] = [left(upright), left(mirrored)];
+        upright > LINE * LINE * picture && MIRRORED * mirrored < upright
     }
 
     fn pairs(&self, points: &[ControlPoint]) -> impl Iterator<Item = (DVec2, DVec2)> {

@@ -51,6 +51,16 @@ impl Plate {
         if !(sheet_mm.is_finite() && sheet_mm.min_element() > 0.0) {
             return Err(RegistrationError::NoSheet);
         }
+        let plate = Self::anywhere(points, smoothing)?;
+        plate.refuse_folds(DVec2::ZERO, sheet_mm)?;
+        Ok(plate)
+    }
+
+    /// [`fit`](Self::fit) of a spline that may fold.
+    pub(in crate::maps) fn anywhere(
+        points: &[ControlPoint],
+        smoothing: f64,
+    ) -> Result<Self, RegistrationError> {
         if !(smoothing.is_finite() && smoothing >= 0.0) {
             return Err(RegistrationError::Smoothing);
         }
@@ -63,6 +73,7 @@ impl Plate {
             return Err(RegistrationError::Doubled {
                 first: first + 1,
                 second: second + 1,
+                of: Frame::Sheet,
             });
         }
         centred.spans_a_plane()?;
@@ -85,7 +96,6 @@ impl Plate {
             a,
             residuals_mm: Vec::new(),
         };
-        plate.refuse_folds(points, sheet_mm)?;
         plate.residuals_mm = (0..n)
             .map(|i| plate.left_out(points[i].1, plate.w[i], inverse[i][i]))
             .collect();
@@ -145,21 +155,23 @@ impl Plate {
     }
 
     /// A map folds where its determinant changes sign. Between control points the determinant
-    /// varies as slowly as the points are spaced, and at them its slope is steepest.
-    fn refuse_folds(
+    /// varies as slowly as the points are spaced, and at them its slope is steepest. Looked for in
+    /// the rectangle of `extent_mm` from `corner_mm`, and at the control points in it.
+    pub(in crate::maps) fn refuse_folds(
         &self,
-        points: &[ControlPoint],
-        sheet_mm: DVec2,
+        corner_mm: DVec2,
+        extent_mm: DVec2,
     ) -> Result<(), RegistrationError> {
-        let step = sheet_mm / (FOLD_GRID - 1) as f64;
+        let step = extent_mm / (FOLD_GRID - 1) as f64;
         let grid = (0..FOLD_GRID * FOLD_GRID)
-            .map(|i| DVec2::new((i % FOLD_GRID) as f64, (i / FOLD_GRID) as f64) * step);
+            .map(|i| corner_mm + DVec2::new((i % FOLD_GRID) as f64, (i / FOLD_GRID) as f64) * step);
         let determinant = |mm: DVec2| self.jacobian_at(mm).determinant();
         let mut found: Vec<(DVec2, f64)> = grid.map(|mm| (mm, determinant(mm))).collect();
-        // The mean over the sheet says which way up the picture is as a whole.
+        // The mean says which way up the picture is as a whole.
         let mean = found.iter().map(|(_, d)| d).sum::<f64>() / found.len() as f64;
-        let on_sheet = |mm: &DVec2| mm.min_element() >= 0.0 && mm.cmple(sheet_mm).all();
-        let nodes = points.iter().map(|point| point.1).filter(on_sheet);
+        let is_in = |mm: &DVec2| mm.cmpge(corner_mm).all() && mm.cmple(corner_mm + extent_mm).all();
+        let nodes = self.nodes.iter().map(|node| self.mm.back(*node));
+        let nodes = nodes.filter(is_in);
         found.extend(nodes.map(|mm| (mm, determinant(mm))));
         if !mean.is_finite() {
             return Err(RegistrationError::NotFinite);
