@@ -487,6 +487,42 @@ fn btdf_study(
     return inks * max(whole - straight, vec3(0.0)) * (at_i.t * at_o.t * INV_PI);
 }
 
+// Twins of src/optics/show_through.rs
+
+const BACKED_MIN: f32 = 1e-6;
+const LIGHTER_MAX: f32 = 10.0;
+
+fn shown_through(
+    through: Through,
+    clear: f32,
+    rho_f: vec3<f32>,
+    rho_b: vec3<f32>,
+    rho_photographed: vec3<f32>,
+    rho_bare: vec3<f32>,
+) -> vec3<f32> {
+    let t = min(through.transmitted * clear, through.reflected + through.transmitted);
+    let r = through.reflected + through.transmitted - t;
+    let front = KEPT_WITHIN * rho_f;
+    let back = KEPT_WITHIN * rho_b;
+    let before = KEPT_WITHIN * rho_photographed;
+    let passes = (1.0 - r * front) * (1.0 - r * back) - t * t * front * back;
+    let photographed = r * (1.0 - r * before) + t * t * before;
+    let change = t * t * (back - before) / max(passes * photographed, vec3(BACKED_MIN));
+    let bare = KEPT_WITHIN * rho_bare;
+    let returned = through.reflected_leaning * clear;
+    let leaning_f = through.transmitted_leaning * (1.0 - r * front) - returned * front;
+    let leaning = through.transmitted_leaning * (1.0 - r * bare) - returned * bare;
+    let slant = through.inner_mean - DIFFUSE_COSINE;
+    let deeper = clamp(1.0 + leaning_f * slant, vec3(0.5), vec3(2.0))
+        / clamp(1.0 + leaning * slant, vec3(0.5), vec3(2.0));
+    return clamp(1.0 + change * deeper * deeper, vec3(0.0), vec3(LIGHTER_MAX));
+}
+
+fn under_tone(shown: vec3<f32>, toned: vec3<f32>, share: vec3<f32>) -> vec3<f32> {
+    let dimmed = toned * toned / max(share, vec3(TONE_MIN));
+    return 1.0 + (shown - 1.0) * min(dimmed, vec3(1.0));
+}
+
 // Twins of src/optics/lamp.rs. A lamp of any shape in one layout, narrowed on the CPU by
 // src/sheet/uniform.rs, so that lamps without area need no branch.
 

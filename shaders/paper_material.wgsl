@@ -12,7 +12,8 @@ enable clip_distances;
     brdf_study_diffuse, btdf_study, capture_floor, facing, fit_root, fresnel_dielectric,
     ies_angles, interface_at, internal_reflectance, light_disc,
     light_distant, light_ies, light_punctual, light_rectangle, mean_inner_cosine, mean_length,
-    optical_depth, path_at, split_even, through_study, toned_paper, widened,
+    optical_depth, path_at, shown_through, split_even, through_study, toned_paper, under_tone,
+    widened,
 }
 #import "embedded://recto/paper_media.wgsl"::{
     CAPTURE_COS_D, SHEEN_MEAN,
@@ -148,6 +149,9 @@ struct Paper {
     clear_scale: f32,
     other_place: MapPlace,
     other_matter_place: MapPlace,
+    // The other side when this one was photographed.
+    photographed_place: MapPlace,
+    photographed_bare: vec3<f32>,
     transmission_place: MapPlace,
     height_place: MapPlace,
     // Heights of black, and how much higher white is, in mm.
@@ -192,6 +196,10 @@ struct Paper {
 #endif
 #ifdef COUPLED
 @group(#{MATERIAL_BIND_GROUP}) @binding(13) var rows: texture_2d<f32>;
+#endif
+#ifdef PHOTOGRAPHED
+// What the other side showed when this one was photographed.
+@group(#{MATERIAL_BIND_GROUP}) @binding(14) var photographed_map: texture_2d<f32>;
 #endif
 #ifdef OVERLAYS
 @group(#{MATERIAL_BIND_GROUP}) @binding(16) var overlay_map_a: texture_2d<f32>;
@@ -501,7 +509,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 #ifdef NORMAL_MAP
     alpha = widened(alpha, shortening);
 #endif
-#ifdef TRANSMISSION
+#ifdef BEHIND
     var other_albedo = paper.other_bare;
 #ifdef OTHER_ALBEDO
     other_albedo = textureSample(other_map, map_sampler, place_uv(paper.other_place, in.side)).rgb;
@@ -517,6 +525,11 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let other_matter = textureSample(
         other_matter_map, map_sampler, place_uv(paper.other_matter_place, in.side),
     );
+#endif
+#ifdef PHOTOGRAPHED
+    let photographed_albedo = textureSample(
+        photographed_map, map_sampler, place_uv(paper.photographed_place, in.side),
+    ).rgb;
 #endif
 #endif
 #ifdef MATTER
@@ -675,14 +688,14 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     cover = with_borne(cover, borne);
 #endif
     let shares = shares_of(s, mean, paper.lit_bare, paper.media.body_albedo, cover);
-    let paper_albedo = shares.paper;
+    var paper_albedo = shares.paper;
     let surface = shares.surface;
     var share_f = uncovered_share(shares, paper.lit_bare);
 #ifdef MEDIA_INDEX
     share_f *= 1.0 + cover.film * (paper.media.film_gain - 1.0);
 #endif
 #else
-    let paper_albedo = albedo_of(s, mean);
+    var paper_albedo = albedo_of(s, mean);
     let surface = 1.0;
     let share_f = paper_albedo / paper.lit_bare;
 #endif
@@ -732,9 +745,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     lit_grains *= shortening;
 #endif
 #endif
-#ifdef TRANSMISSION
+#ifdef BEHIND
     // Both inks by their photographs, over the bare paper's.
 #ifdef COUPLED
+    let whole_b = max(other_albedo - capture_floor(s, mean), vec3(0.0)) / paper.other_bare;
 #ifdef OTHER_MATTER
     let other_particles = other_matter.z;
     let other_open = max(1.0 - other_particles - other_matter.y, 0.0);
@@ -750,42 +764,85 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let other = shares_of(of_other, mean, paper.other_bare, other_body, other_cover);
     let share_b = max(uncovered_share(other, paper.other_bare), vec3(0.0));
 #else
-    let share_b = max(other_albedo - capture_floor(s, mean), vec3(0.0)) / paper.other_bare;
+    let share_b = whole_b;
 #endif
 #else
     let share_f = albedo / paper.lit_bare;
     let share_b = other_albedo / paper.other_bare;
 #endif
 #ifdef TIER_STUDY
-    // What covers either side lets less through.
-    var baked = vec3(1.0);
     var ink_f = share_f;
     var ink_b = share_b;
-    var depth_f = darkness;
-    var depth_b = optical_depth(film, capture, share_b);
 #ifdef MATTER
     // Where no ink lies, the paper itself is dark or light.
     let toned = toned_paper(paper.through, share_f);
+    ink_f = mix(vec3(1.0), ink_f, cover.film);
+#endif
+#ifdef OTHER_MATTER
+    ink_b = mix(vec3(1.0), ink_b, other_cover.film);
+#endif
+    var rho_f = internal_reflectance(film, ink_f);
+    var rho_b = internal_reflectance(film, ink_b);
+#ifdef SHOW_THROUGH
+    var rho_shown = rho_b;
+    var rho_bare = internal_reflectance(film, vec3(1.0));
+    var rho_photographed = rho_bare;
+#ifdef OTHER_MATTER
+    // What covers the other side counts as ink that photographs as dark.
+    rho_shown = mix(
+        internal_reflectance(film, whole_b), rho_shown,
+        max(1.0 - other_cover.particles - other_cover.body, 0.0),
+    );
+#endif
+#ifdef PHOTOGRAPHED
+    // By the darkness alone on both, so that the paper's own tone is in both.
+    let share_photographed = max(photographed_albedo - capture_floor(s, mean), vec3(0.0))
+        / paper.photographed_bare;
+    rho_shown = internal_reflectance(film, whole_b);
+    rho_photographed = internal_reflectance(film, share_photographed);
+#endif
+#endif
+#ifdef MEDIA_INDEX
+    // The film's numbers are of its own index; where none lies, the boundary is the paper's.
+    let r_i = vec3(max(1.0 - interface_mean(y).t_mean / (paper.eta * paper.eta), 0.0));
+    let of_boundary = r_i / max(internal_reflectance(film, vec3(1.0)), vec3(1e-3));
+    rho_f = mix(r_i, internal_reflectance(film, share_f), cover.film);
+    rho_b *= of_boundary;
+#ifdef SHOW_THROUGH
+    rho_shown *= of_boundary;
+    rho_photographed *= of_boundary;
+    rho_bare = r_i;
+#endif
+#endif
+#ifdef SHOW_THROUGH
+    var shown = shown_through(
+        paper.through, clear, rho_f, rho_shown, rho_photographed, rho_bare,
+    );
+#ifdef MATTER
+    shown = mix(under_tone(shown, toned, share_f), shown, cover.film);
+#endif
+    // No more than a sheet that gives back all light can photograph.
+    paper_albedo = min(paper_albedo * shown, vec3(1.0 / (mean.t_mean * mean.capture)));
+#endif
+#endif
+#endif
+#ifdef TRANSMISSION
+#ifdef TIER_STUDY
+    // What covers either side lets less through.
+    var baked = vec3(1.0);
+    var depth_f = darkness;
+    var depth_b = optical_depth(film, capture, share_b);
+#ifdef MATTER
     baked *= passing(cover, paper.media.body_through, toned);
     depth_f = veiled(cover, paper.media.body_through, toned, darkness);
-    ink_f = mix(vec3(1.0), ink_f, cover.film);
 #endif
 #ifdef OTHER_MATTER
     // The paper's own tone is seen, and counted, on this side.
     baked *= passing(other_cover, paper.media.other_body_through, vec3(1.0));
     depth_b = veiled(other_cover, paper.media.other_body_through, vec3(1.0), depth_b);
-    ink_b = mix(vec3(1.0), ink_b, other_cover.film);
 #endif
 #ifdef SHEEN
     baked *= 1.0 - sheen * sheen_albedo(max(dot(n, v), MU_MIN));
-#endif
-    var rho_f = internal_reflectance(film, ink_f);
-    var rho_b = internal_reflectance(film, ink_b);
-#ifdef MEDIA_INDEX
-    // The film's numbers are of its own index; where none lies, the boundary is the paper's.
-    let r_i = vec3(max(1.0 - interface_mean(y).t_mean / (paper.eta * paper.eta), 0.0));
-    rho_f = mix(r_i, internal_reflectance(film, share_f), cover.film);
-    rho_b *= r_i / max(internal_reflectance(film, vec3(1.0)), vec3(1e-3));
 #endif
     let seen = Seen(depth_f, clear, depth_b, rho_f, rho_b);
 #else

@@ -5,6 +5,7 @@
 
 mod lobes;
 mod matter;
+mod show_through;
 
 use std::path::Path;
 
@@ -68,10 +69,14 @@ pub struct Terms {
     pub transmission: bool,
     /// A map says how much of it, from place to place.
     pub transmission_map: bool,
-    /// The other side has a picture, whose ink that light crosses.
+    /// The other side has a picture, whose ink that light crosses, or shows through.
     pub other_albedo: bool,
     /// Body colour or particles on the other side hold light back.
     pub other_matter: bool,
+    /// The other side's ink darkens the light that this side reflects.
+    pub show_through: bool,
+    /// A picture says what ink of the other side this side's picture holds already.
+    pub photographed: bool,
     /// A share of the gloss goes back to the lamp.
     pub retro: bool,
     pub sheen: bool,
@@ -102,8 +107,10 @@ pub enum MapUse {
     MatterMore(MediaStack<MatterSlot>),
     Outline(MapFile),
     Transmission(MapFile),
-    /// What the other side shows, for light that comes through it.
+    /// What the other side shows, for light that comes through it, and for its ink in reflected light.
     OtherAlbedo(ColourMap),
+    /// What it showed when this side was photographed.
+    Photographed(ColourMap),
     /// Shares of film, body colour and particles there, all sorts of these in one.
     OtherMatter(MediaStack<MatterSlot>),
     Overlay(Overlay),
@@ -119,7 +126,7 @@ impl MapUse {
             Self::Roughness(map) => &map.file,
             Self::Height(map) => &map.file,
             Self::Outline(file) | Self::Transmission(file) => file,
-            Self::OtherAlbedo(map) => &map.file,
+            Self::OtherAlbedo(map) | Self::Photographed(map) => &map.file,
             Self::RoughnessOfMatter(stack, _) => &stack.file,
             Self::Matter(stack) | Self::MatterMore(stack) | Self::OtherMatter(stack) => &stack.file,
             Self::Overlay(overlay) => &overlay.file,
@@ -147,7 +154,7 @@ impl MapUse {
             Self::Roughness(map) => &mut map.file,
             Self::Height(map) => &mut map.file,
             Self::Outline(file) | Self::Transmission(file) => file,
-            Self::OtherAlbedo(map) => &mut map.file,
+            Self::OtherAlbedo(map) | Self::Photographed(map) => &mut map.file,
             Self::RoughnessOfMatter(stack, _) => &mut stack.file,
             Self::Matter(stack) | Self::MatterMore(stack) | Self::OtherMatter(stack) => {
                 &mut stack.file
@@ -163,7 +170,9 @@ impl MapUse {
     pub fn load(&self) -> Result<Pyramid, MapError> {
         let file = self.file();
         match self {
-            Self::Albedo(map) | Self::OtherAlbedo(map) => maps::load_colour(file, map.encoding),
+            Self::Albedo(map) | Self::OtherAlbedo(map) | Self::Photographed(map) => {
+                maps::load_colour(file, map.encoding)
+            }
             Self::Normal(map) => maps::load_normal(file, map.y),
             Self::NormalFromHeight(map, extent_mm) => {
                 maps::load_normal_from_height(file, map.range_um, *extent_mm)
@@ -196,6 +205,7 @@ impl MapUse {
             Self::Outline(_) => "outline",
             Self::Transmission(_) => "transmission",
             Self::OtherAlbedo(_) => "albedo of the other side",
+            Self::Photographed(_) => "albedo of the other side when this one was photographed",
             Self::OtherMatter(_) => "media of the other side",
             Self::Overlay(_) => "overlay",
         }
@@ -207,6 +217,7 @@ impl MapUse {
         let texel = match self {
             Self::Albedo(_)
             | Self::OtherAlbedo(_)
+            | Self::Photographed(_)
             | Self::Overlay(_)
             | Self::Normal(_)
             | Self::NormalFromHeight(..) => 8,
@@ -228,7 +239,7 @@ pub struct SideNeeds {
     pub maps: Vec<MapUse>,
     /// What lies on it, where the tier tells media apart.
     pub media: SideMedia,
-    /// What lies on the other side, where light comes through.
+    /// What lies on the other side, where light comes through or its ink shows.
     pub other_media: SideMedia,
     /// How many times steeper the relief is shown.
     pub exaggerate: f64,
@@ -354,9 +365,15 @@ fn side_needs(
         maps.push(MapUse::Outline(outline));
     }
     lobes::lobes(&drawing.paper, directional, &mut terms, &mut say);
-    let other_media = transmission(
+    let mut other_media = transmission(
         exhibit, scene, drawing, name, &mut terms, &mut maps, &mut say,
     );
+    let of_reflected = show_through::show_through(
+        exhibit, scene, drawing, name, &mut terms, &mut maps, &mut say,
+    );
+    if !terms.transmission {
+        other_media = of_reflected;
+    }
     // The mesh of a curled sheet ends where the sheet does, and an outline cuts within it; a flat
     // one reaches further, for the smooth step.
     terms.edge = !(terms.curved && terms.outline);
@@ -379,6 +396,7 @@ fn side_needs(
                 | MapUse::Height(_)
                 | MapUse::Transmission(_)
                 | MapUse::OtherAlbedo(_)
+                | MapUse::Photographed(_)
                 | MapUse::OtherMatter(_)
         )
     });

@@ -36,5 +36,7 @@ mod relief;
 mod saved;
 #[path = "frames/sheets.rs"]
 mod sheets;
+#[path = "frames/show_through.rs"]
+mod shown_through;
 #[path = "frames/strange.rs"]
 mod strange;

@@ -9,6 +9,8 @@ mod energy;
 mod measured;
 #[path = "support/rgl.rs"]
 mod rgl;
+#[path = "judged/show_through.rs"]
+mod show_through;
 mod support;
 #[path = "judged/traps.rs"]
 mod traps;
@@ -109,7 +111,10 @@ struct Judge(HashMap<String, Estimate>);
 
 impl Judge {
     fn read() -> Self {
-        let text = include_str!("fixtures/judged.csv");
+        Self::of(include_str!("fixtures/judged.csv"))
+    }
+
+    fn of(text: &str) -> Self {
         Self(
             text.lines()
                 .skip(1)

@@ -17,7 +17,8 @@ const MAY_IMPORT: [(&str, &[&str]); 22] = [
     ("lettering", &[]),
     // Headers of pictures are checked at validation.
     ("manifest", &["units", "colour", "optics", "maps"]),
-    ("needs", &["manifest", "optics", "maps"]),
+    // What leaving a term out costs is told in ΔE00.
+    ("needs", &["manifest", "optics", "maps", "colour"]),
     // What is measured lies on a side of an exhibit, in its maps.
     (
         "readings",

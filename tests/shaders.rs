@@ -20,6 +20,7 @@ use recto::{
         microfacet::{ALPHA_MIN, MU_MIN},
         quadrature::GAUSS_LEGENDRE,
         refraction::COSINE_MIN,
+        show_through::{BACKED_MIN, LIGHTER_MAX},
         study::{DIFFUSE_COSINE, LOST_DEPTH},
         table::{ALPHA_FIT_MIN, LATE_TERMS, MU_TERMS},
         through::{TONE_LOG_MAX, TONE_MIN, TONE_TERMS},
@@ -256,6 +257,8 @@ fn constants_of_the_shaders_are_those_of_the_sources() {
     assert_eq!(constant(PAPER_BSDF, "ALPHA_FIT_MIN"), ALPHA_FIT_MIN);
     assert_eq!(constant(PAPER_BSDF, "COSINE_MIN"), COSINE_MIN);
     assert_eq!(constant(PAPER_BSDF, "TONE_MIN"), TONE_MIN);
+    assert_eq!(constant(PAPER_BSDF, "BACKED_MIN"), BACKED_MIN);
+    assert_eq!(constant(PAPER_BSDF, "LIGHTER_MAX"), LIGHTER_MAX);
     assert_eq!(constant(PAPER_BSDF, "TONE_LOG_MAX"), TONE_LOG_MAX);
     for (name, value) in [
         ("DIFFUSE_COSINE", DIFFUSE_COSINE),
@@ -463,6 +466,8 @@ impl Sentinel {
             clear_scale: self.f32(),
             other_place: self.map_place().0,
             other_matter_place: self.map_place().0,
+            photographed_place: self.map_place().0,
+            photographed_bare: self.vec3(),
             transmission_place: self.map_place().0,
             height_place: self.map_place().0,
             height_range: self.vec2(),
@@ -611,9 +616,13 @@ fn the_material_defines_what_the_glue_asks_for() {
 
 /// Terms that are needed with others only: see `side_needs` in src/needs.rs. The needed stand
 /// before those that need them.
-const NEEDS: [(&str, &str); 14] = [
+const NEEDS: [(&str, &str); 18] = [
+    ("TRANSMISSION", "BEHIND"),
     ("TRANSMISSION_MAP", "TRANSMISSION"),
-    ("OTHER_ALBEDO", "TRANSMISSION"),
+    ("OTHER_ALBEDO", "BEHIND"),
+    ("SHOW_THROUGH", "OTHER_ALBEDO"),
+    ("SHOW_THROUGH", "TIER_STUDY"),
+    ("PHOTOGRAPHED", "SHOW_THROUGH"),
     ("OTHER_MATTER", "OTHER_ALBEDO"),
     ("OTHER_MATTER", "TIER_STUDY"),
     ("MATTER", "ALBEDO_MAP"),
@@ -635,6 +644,7 @@ fn can_occur(defined: &[&str]) -> bool {
     // Nothing of the Lambert tier is rough, and the draft tier takes a rectangle for a point.
     tiers.filter(|tier| has(tier)).count() == 1
         && NEEDS.iter().all(|(term, needed)| has(needed) || !has(term))
+        && (!has("BEHIND") || has("TRANSMISSION") || has("SHOW_THROUGH"))
         && !(has("TIER_LAMBERT") && has("ROUGHNESS_MAP"))
         && !(has("AREA_LAMPS") && (has("DISTANT_LAMPS") || has("TIER_DRAFT")))
 }
@@ -784,6 +794,7 @@ fn terms_that_are_not_needed_are_absent() {
         (&["GLOSS", "RETRO"], "turned"),
         (&["GLOSS", "ANISOTROPIC"], "gloss_lobe_anisotropic"),
         (&["SHEEN"], "brdf_sheen"),
+        (&["BEHIND", "OTHER_ALBEDO", "SHOW_THROUGH"], "shown_through"),
     ] {
         assert!(!plain.contains(own), "{own}");
         assert!(functions(terms).contains(own), "{terms:?}: {own}");

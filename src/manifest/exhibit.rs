@@ -144,7 +144,29 @@ pub struct Paper {
     pub anisotropy: f64,
     /// Direction of the lobe's longer axis, anticlockwise from the right as the recto is seen.
     pub anisotropy_angle: Degrees,
+    pub show_through: ShowThrough,
     pub source: Source,
+}
+
+/// Where the other side's ink, as it shows in reflected light, comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShowThrough {
+    /// From the sides' own pictures, which hold it: they are photographs.
+    #[default]
+    Photographed,
+    /// From the paper: the pictures, generated or cleaned, hold none.
+    Modelled,
+}
+
+/// What lay on the other side when a side's picture was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Over<'d> {
+    /// What lies there now.
+    Same,
+    Nothing,
+    /// Ink that this picture shows.
+    Other(&'d ColourMap),
 }
 
 impl Paper {

@@ -8,8 +8,8 @@ use super::{
     decode::{Brief, Pattern},
     document::{self, Document, Words},
     exhibit::{
-        Band, Camera, Drawing, Exhibit, HeightMap, MapFile, MediaContent, MediaMap, Overlay,
-        OverlayKind, Scene, Side, SideName, SidePatch, State, Surface, Wording,
+        Band, Camera, Drawing, Exhibit, HeightMap, MapFile, MediaContent, MediaMap, Over, Overlay,
+        OverlayKind, Scene, ShowThrough, Side, SideName, SidePatch, State, Surface, Wording,
     },
     fault::{Fault, Faults, Severity, quote},
     raw::{lamp::RawLampKind, values::FilePath},
@@ -208,6 +208,27 @@ impl Drawing {
                 media: patch.media.clone().unwrap_or_default(),
             }),
             (None, None) => None,
+        }
+    }
+
+    /// What lay on the other side of `side` when the picture was made that `side` has in a state, by
+    /// its index. A state that replaces the picture of one side alone leaves that of the other as it
+    /// was photographed before.
+    pub fn photographed_over(&self, side: SideName, state: Option<usize>) -> Over<'_> {
+        if self.paper.show_through == ShowThrough::Modelled {
+            return Over::Nothing;
+        }
+        let Some(state) = state.and_then(|index| self.states.get(index)) else {
+            return Over::Same;
+        };
+        let (here, there, before) = match side {
+            SideName::Recto => (&state.recto, &state.verso, self.verso.as_ref()),
+            SideName::Verso => (&state.verso, &state.recto, Some(&self.recto)),
+        };
+        match (&here.albedo, &there.albedo, before) {
+            (None, Some(_), None) => Over::Nothing,
+            (None, Some(now), Some(before)) if *now != before.albedo => Over::Other(&before.albedo),
+            _ => Over::Same,
         }
     }
 

@@ -18,10 +18,11 @@ use super::{
     medium::{Matter, Medium},
     microfacet::MU_MIN,
     refraction::{PathTable, crossed},
+    show_through::{shown_through, under_tone},
     slab::{Phase, Slab, UM_PER_MM},
     study::{Study, Ways, brdf_study},
-    table::{Interface, InterfaceTable},
-    through::{Seen, btdf_study},
+    table::{Interface, InterfaceMean, InterfaceTable},
+    through::{Seen, btdf_study, toned_paper},
     tier::{Facing, Surface, Tier, brdf_draft, brdf_gallery, brdf_lambert, facing},
 };
 use crate::units::Micrometres;
@@ -80,6 +81,9 @@ pub struct Specimen {
     pub particle: Particle,
     pub body_albedo: DVec3,
     pub body_through: DVec3,
+    /// Share of the paper's light that the ink of the other side leaves: see
+    /// [`super::show_through`].
+    pub left: DVec3,
 }
 
 /// Thickness of the sheet under a drawn medium.
@@ -147,7 +151,26 @@ impl Specimen {
             particle,
             body_albedo: media.body_albedo,
             body_through: media.body_through,
+            left: DVec3::ONE,
         }
+    }
+
+    /// What the other side's ink leaves of the paper's light, where the other side shows the share
+    /// `share_b` of its bare paper's light, and showed `share_photographed` when this one was
+    /// photographed.
+    pub fn left(&self, share_b: DVec3, share_photographed: DVec3) -> DVec3 {
+        let Study { film, through, .. } = &self.study;
+        let share_f = uncovered_share(&self.shares(), self.study.bare);
+        let rho = |share: DVec3| internal_reflectance(film, share);
+        let shown = shown_through(
+            through,
+            1.0,
+            rho(DVec3::ONE.lerp(share_f, self.cover.film)),
+            rho(share_b),
+            rho(share_photographed),
+            rho(DVec3::ONE),
+        );
+        under_tone(shown, toned_paper(through, share_f), share_f).lerp(shown, self.cover.film)
     }
 
     /// What light through the sheet meets: a drawn medium on the side of the light.
@@ -160,6 +183,12 @@ impl Specimen {
             rho_b: internal_reflectance(&self.study.film, share),
             clear: 1.0,
         }
+    }
+
+    /// `paper`, the diffuse albedo of the spot, with what the other side's ink leaves of it: no more
+    /// than a sheet that gives back all light can photograph.
+    pub fn remaining(&self, paper: DVec3, mean: &InterfaceMean) -> DVec3 {
+        (paper * self.left).min(DVec3::splat(1.0 / (mean.t_mean * mean.capture)))
     }
 
     /// The path through its film in the geometry of capture.
@@ -246,7 +275,7 @@ impl Specimen {
         let mirrored = particle_capture(particle, particle.alpha);
         let mirrors = particle_gloss(albedo, mirrored, shares.lit);
         let (split, depth) = (&self.study.split, self.depth());
-        let (paper, surface) = (shares.paper, shares.surface);
+        let (paper, surface) = (self.remaining(shares.paper, &mean), shares.surface);
         let grains = (albedo - mirrored * mirrors).max(DVec3::ZERO) / PI
             + particle_lobe(particle, particle.alpha, g) * mirrors;
         let ways = Ways {

@@ -29,6 +29,7 @@ pub mod quadrature;
 pub mod refraction;
 pub mod relief;
 pub mod shade;
+pub mod show_through;
 pub mod slab;
 pub mod spectrum;
 pub mod study;

@@ -98,7 +98,10 @@ impl Spot {
         let mean = self.specimen.interface.mean_at(s.alpha);
         let mu_o = mu_o.max(MU_MIN);
         let at_o = self.specimen.interface.at(mu_o, s.alpha);
-        let albedo = albedo_of(s, &mean);
+        let mut albedo = albedo_of(s, &mean);
+        if tier == Tier::Study {
+            albedo = self.specimen.remaining(albedo, &mean);
+        }
         let mut diffuse = albedo * (at_o.t * mean.t_mean * mean.capture);
         if tier == Tier::Study {
             let (capture, path_o) = (self.specimen.capture(), self.specimen.path(mu_o));

@@ -36,6 +36,8 @@ const PROFILE_BINDING: u32 = 11;
 const OTHER_MATTER_BINDING: u32 = 12;
 /// Binding of the rows over roughness.
 const ROW_BINDING: u32 = 13;
+/// Binding of the other side as it was photographed.
+const PHOTOGRAPHED_BINDING: u32 = 14;
 /// Binding of the first overlay.
 const OVERLAY_BINDING: u32 = 16;
 
@@ -53,8 +55,10 @@ pub struct PaperMaps {
     /// Heights of the relief, for its shadows.
     pub height: Option<Handle<Image>>,
     pub transmission: Option<Handle<Image>>,
-    /// Albedo of the other side, for light that comes through it.
+    /// Albedo of the other side, for light that comes through it or shows its ink.
     pub other: Option<Handle<Image>>,
+    /// The same as it was when this side was photographed.
+    pub photographed: Option<Handle<Image>>,
     pub overlays: Vec<Handle<Image>>,
     /// Shares of film, body colour and all particles of the other side.
     pub other_matter: Option<Handle<Image>>,
@@ -101,6 +105,7 @@ impl PaperMaterial {
             (9, &maps.transmission),
             (10, &maps.other),
             (OTHER_MATTER_BINDING, &maps.other_matter),
+            (PHOTOGRAPHED_BINDING, &maps.photographed),
         ];
         let overlays = (0..MAX_OVERLAYS).map(|i| maps.overlays.get(i));
         fixed
@@ -204,7 +209,7 @@ impl AsBindGroup for PaperMaterial {
         let overlays = OVERLAY_BINDING..OVERLAY_BINDING + MAX_OVERLAYS as u32;
         entries.extend(
             (2..=10)
-                .chain([OTHER_MATTER_BINDING])
+                .chain([OTHER_MATTER_BINDING, PHOTOGRAPHED_BINDING])
                 .chain(overlays)
                 .map(|i| map.build(i, ShaderStages::FRAGMENT)),
         );
@@ -282,6 +287,9 @@ pub fn definitions(terms: &Terms, albedo_map: bool, display: bool) -> Vec<&'stat
         ),
         ("TRANSMISSION", terms.transmission),
         ("TRANSMISSION_MAP", terms.transmission_map),
+        ("BEHIND", terms.transmission || terms.show_through),
+        ("SHOW_THROUGH", terms.show_through),
+        ("PHOTOGRAPHED", terms.photographed),
         ("OTHER_ALBEDO", terms.other_albedo),
         ("TIER_ISLE", terms.tier == Tier::Isle),
         ("TIER_PHONG", terms.tier == Tier::Phong),

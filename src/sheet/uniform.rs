@@ -339,6 +339,8 @@ pub struct PaperUniform {
     pub clear_scale: f32,
     pub other_place: MapPlace,
     pub other_matter_place: MapPlace,
+    pub photographed_place: MapPlace,
+    pub photographed_bare: Vec3,
     pub transmission_place: MapPlace,
     pub height_place: MapPlace,
     pub height_range: Vec2,

@@ -43,7 +43,7 @@ impl Request {
     fn key(mut self) -> Self {
         if let Self::Map(map) = &mut self {
             map.file_mut().uv_from_side = DAffine2::IDENTITY;
-            if let MapUse::OtherAlbedo(colour) = map {
+            if let MapUse::OtherAlbedo(colour) | MapUse::Photographed(colour) = map {
                 *map = MapUse::Albedo(colour.clone());
             }
         }

@@ -303,16 +303,17 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUnif
         }
         surface
     };
-    // What bare paper shows on the side that is seen, and on the other.
-    let mut bare = [BARE_PAPER; 2];
+    // What bare paper shows on the side that is seen, and on the other, now and then.
+    let mut bare = [BARE_PAPER; 3];
     for (map, facts) in side.maps.iter().zip(facts) {
         match map {
             MapUse::Albedo(_) => bare[0] = facts.bare,
             MapUse::OtherAlbedo(_) => bare[1] = facts.bare,
+            MapUse::Photographed(_) => bare[2] = facts.bare,
             _ => {}
         }
     }
-    let [seen, other] = bare.map(|of_picture| surface(paper.albedo.unwrap_or(of_picture)));
+    let [seen, other, before] = bare.map(|of_picture| surface(paper.albedo.unwrap_or(of_picture)));
     // Per texel, what combs the gloss is known only there.
     uniform.f_capture = fresnel_dielectric(FRAC_PI_8.cos(), paper.index) as f32;
     uniform.lit_bare = seen.albedo.as_vec3();
@@ -330,6 +331,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUnif
     if side.terms.tier.is_coupled() {
         let lit = |of: &tier::Surface| albedo_of(of, &mean).max(DVec3::splat(1e-3)).as_vec3();
         (uniform.lit_bare, uniform.other_bare) = (lit(&seen), lit(&other));
+        uniform.photographed_bare = lit(&before);
     }
     let mut films = None;
     if side.terms.tier == Tier::Study || side.terms.transmission {
@@ -384,6 +386,7 @@ fn constants(drawing: &Drawing, side: &SideNeeds, facts: &[Facts]) -> (PaperUnif
             MapUse::Outline(_) => uniform.outline_place = MapPlace::new(uv_from_side),
             MapUse::Height(height) => uniform.set_height(height),
             MapUse::OtherAlbedo(_) => uniform.other_place = MapPlace::new(uv_from_side),
+            MapUse::Photographed(_) => uniform.photographed_place = MapPlace::new(uv_from_side),
             MapUse::OtherMatter(_) => uniform.other_matter_place = MapPlace::new(uv_from_side),
             MapUse::Transmission(_) => {
                 uniform.transmission_place = MapPlace::new(uv_from_side);
@@ -408,6 +411,7 @@ fn bound(side: &SideNeeds, images: Vec<Handle<Image>>) -> PaperMaps {
             MapUse::Height(_) => maps.height = Some(image),
             MapUse::Transmission(_) => maps.transmission = Some(image),
             MapUse::OtherAlbedo(_) => maps.other = Some(image),
+            MapUse::Photographed(_) => maps.photographed = Some(image),
             MapUse::OtherMatter(_) => maps.other_matter = Some(image),
             MapUse::Overlay(_) => maps.overlays.push(image),
         }

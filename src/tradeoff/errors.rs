@@ -83,6 +83,7 @@ pub fn spot(subject: &Subject, judged: &Judged) -> Spot {
         particle,
         body_albedo: DVec3::ZERO,
         body_through: DVec3::ONE,
+        left: DVec3::ONE,
     };
     let behind = Behind {
         bare: judged.bare.mean,

@@ -64,7 +64,9 @@ impl Maps {
 fn key(map: &MapUse) -> String {
     let role = match map {
         // Both are pictures of a side.
-        MapUse::OtherAlbedo(colour) => return key(&MapUse::Albedo(colour.clone())),
+        MapUse::OtherAlbedo(colour) | MapUse::Photographed(colour) => {
+            return key(&MapUse::Albedo(colour.clone()));
+        }
         map => map.role(),
     };
     if let MapUse::Overlay(overlay) = map {
@@ -85,6 +87,8 @@ pub(super) struct Sheet<'m> {
     interface: InterfaceTable,
     bare: DVec3,
     other_bare: DVec3,
+    photographed_bare: DVec3,
+    shows_through: bool,
     specular: f64,
     coding: Option<Coding>,
     /// One over the mean of the transmission map.
@@ -99,12 +103,13 @@ impl<'m> Sheet<'m> {
             .iter()
             .filter_map(|map| Some((map, maps.get(map)?)))
             .collect();
-        let mut bare = [BARE_PAPER; 2];
+        let mut bare = [BARE_PAPER; 3];
         let (mut coding, mut clear_scale) = (None, 1.0);
         for (map, pyramid) in &held {
             match map {
                 MapUse::Albedo(_) => bare[0] = maps::bare_albedo(pyramid).into(),
                 MapUse::OtherAlbedo(_) => bare[1] = maps::bare_albedo(pyramid).into(),
+                MapUse::Photographed(_) => bare[2] = maps::bare_albedo(pyramid).into(),
                 MapUse::Normal(_) | MapUse::NormalFromHeight(..) => {
                     coding = pyramid
                         .levels
@@ -115,7 +120,8 @@ impl<'m> Sheet<'m> {
                 _ => {}
             }
         }
-        let [bare, other_bare] = bare.map(|picture| paper.albedo.map_or(picture, DVec3::from));
+        let [bare, other_bare, photographed_bare] =
+            bare.map(|picture| paper.albedo.map_or(picture, DVec3::from));
         let specular = if side.terms.specular {
             paper.specular
         } else {
@@ -145,6 +151,8 @@ impl<'m> Sheet<'m> {
             interface,
             bare,
             other_bare,
+            photographed_bare,
+            shows_through: side.terms.show_through,
             specular,
             coding,
             clear_scale,
@@ -203,16 +211,28 @@ impl<'m> Sheet<'m> {
         let (bare, body) = (self.study.bare, self.media.body_albedo);
         let borne = borne_out(&surface, &mean, bare, body, &cover);
         let cover = with_borne(&cover, borne);
+        let mut specimen = Specimen {
+            surface,
+            interface: self.interface.clone(),
+            study: self.study.clone(),
+            cover,
+            particle,
+            body_albedo: self.media.body_albedo,
+            body_through: self.media.body_through,
+            left: DVec3::ONE,
+        };
+        if self.shows_through {
+            let diffuse = |albedo: DVec3| albedo_of(&Surface { albedo, ..surface }, &mean);
+            let of_bare = |albedo: DVec3, bare: DVec3| {
+                diffuse(albedo) / diffuse(bare).max(DVec3::splat(1e-3))
+            };
+            let before = colour(&|map| matches!(map, MapUse::Photographed(_)));
+            let before =
+                before.map_or(DVec3::ONE, |albedo| of_bare(albedo, self.photographed_bare));
+            specimen.left = specimen.left(of_bare(other, self.other_bare), before);
+        }
         let spot = Spot {
-            specimen: Specimen {
-                surface,
-                interface: self.interface.clone(),
-                study: self.study.clone(),
-                cover,
-                particle,
-                body_albedo: self.media.body_albedo,
-                body_through: self.media.body_through,
-            },
+            specimen,
             normal,
             shortening,
             behind: Behind {

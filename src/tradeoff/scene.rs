@@ -157,10 +157,11 @@ pub enum Aspect {
     Particles,
     Gloss,
     Coupling,
+    ShowThrough,
 }
 
 impl Aspect {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Relief,
         Self::Shadows,
         Self::Areas,
@@ -169,6 +170,7 @@ impl Aspect {
         Self::Particles,
         Self::Gloss,
         Self::Coupling,
+        Self::ShowThrough,
     ];
 
     /// What it is, for people.
@@ -182,6 +184,7 @@ impl Aspect {
             Self::Particles => "metal, chalk and body colour, apart from paper and ink",
             Self::Gloss => "gloss of the surface",
             Self::Coupling => "diffuse light coupled to the surface",
+            Self::ShowThrough => "the other side's ink, as it shows through",
         }
     }
 
@@ -189,9 +192,11 @@ impl Aspect {
     pub fn is_in(self, tier: Tier) -> bool {
         match self {
             Self::Relief => true,
-            Self::Shadows | Self::Film | Self::SingleScatter | Self::Particles => {
-                tier == Tier::Study
-            }
+            Self::Shadows
+            | Self::Film
+            | Self::SingleScatter
+            | Self::Particles
+            | Self::ShowThrough => tier == Tier::Study,
             Self::Areas => tier != Tier::Draft,
             Self::Gloss => !matches!(tier, Tier::Lambert | Tier::OrenNayar),
             Self::Coupling => tier.is_coupled(),
@@ -444,6 +449,7 @@ impl Spot {
                 spot.specimen.cover.grains = DVec3::ZERO;
             }
             Aspect::Film => spot.specimen.cover.film = 0.0,
+            Aspect::ShowThrough => spot.specimen.left = DVec3::ONE,
             Aspect::Relief => {
                 spot.normal = DVec3::Z;
                 spot.shortening = 1.0;

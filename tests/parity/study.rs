@@ -8,9 +8,10 @@ use recto::{
         ink::{DEPTH_MAX, capture_path, internal_reflectance, optical_depth},
         microfacet::{d_ggx_anisotropic, v_smith_anisotropic},
         refraction::{PathRow, PathTable, crossed, path_at, smooth_cosine},
+        show_through::{BACKED_MIN, shown_through, under_tone},
         slab::{Phase, Slab},
         study::{Study, Ways, brdf_study, brdf_study_diffuse},
-        through::{Seen, TONE_MIN, Through, btdf_study, through_study, toned_paper},
+        through::{KEPT_WITHIN, Seen, TONE_MIN, Through, btdf_study, through_study, toned_paper},
         tier::albedo_of,
     },
     sheet::uniform::{FilmUniform, SplitUniform, ThroughUniform, narrow_paths},
@@ -219,7 +220,9 @@ fn make_papers() -> Vec<Paper> {
 const NUMBERS: usize = 29;
 /// Where a case's paths begin.
 const PATHS: usize = 17;
-const OUTPUTS: usize = 21;
+/// Where the other side's ink begins, behind what is compared with itself.
+const SHOWN: usize = 21;
+const OUTPUTS: usize = 27;
 
 fn spots(paper: &Surface, study: &Study, count: usize) -> Vec<Vec<f32>> {
     let seeded = Seeded::new(13);
@@ -298,6 +301,38 @@ fn spot(x: &[f64], paper: &Surface, mean: &InterfaceMean, study: &Study) -> [DVe
         brdf_study_diffuse(&s, &g, &at_i, &at_o, mean, split, depth, &ways, lit),
         toned_paper(through, front),
     ]
+}
+
+/// What the other side's ink leaves, on the sheet's own paper and where that is darker.
+fn shown(x: &[f64], study: &Study) -> [DVec3; 2] {
+    let rho = |share: DVec3| internal_reflectance(&study.film, share);
+    let (front, back) = (DVec3::from_slice(&x[8..]), DVec3::from_slice(&x[11..]));
+    let (before, bare) = (rho(DVec3::splat(x[16])), rho(DVec3::ONE));
+    let through = &study.through;
+    let shown = shown_through(through, x[14], rho(front), rho(back), before, bare);
+    [shown, under_tone(shown, toned_paper(through, front), front)]
+}
+
+/// What rounding costs there: of ρ before their difference, and of the passes before theirs.
+fn shown_rounding(x: &[f64], study: &Study) -> f64 {
+    let through = &study.through;
+    let rho = |share: DVec3| KEPT_WITHIN * internal_reflectance(&study.film, share);
+    let (front, back) = (
+        rho(DVec3::from_slice(&x[8..])),
+        rho(DVec3::from_slice(&x[11..])),
+    );
+    let before = rho(DVec3::splat(x[16]));
+    let all = through.reflected + through.transmitted;
+    let t = (through.transmitted * x[14]).min(all);
+    let r = all - t;
+    let passes = (1.0 - r * front) * (1.0 - r * back) - t * t * front * back;
+    let photographed = r * (1.0 - r * before) + t * t * before;
+    let over = (passes * photographed).max(DVec3::splat(BACKED_MIN));
+    // What ρ is made of cancels too.
+    let terms: DVec3 = study.film.internal.iter().map(|c| c.abs()).sum();
+    let of_rho = (terms + 1.0) * t * t / over;
+    let of_passes = t * t * (back - before).abs() / over * (1.0 + t * t + r) / passes.abs();
+    UNIT_PRODUCT * 4.0 * (of_rho + of_passes).max_element()
 }
 
 /// What the terms of `crossing` add up to before they cancel, dimmed by the seen side's ink, times
@@ -440,7 +475,13 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
             s, exchanged, at_o, at_i, mean, split, depth, other, lit, given[at + 16u]);
         let h = btdf_study(through, turned, at_o, at_i, mean, ways.path_o, ways.path_i, s.eta);
         found[to + 15u] = e.x; found[to + 16u] = e.y; found[to + 17u] = e.z;
-        found[to + 18u] = h.x; found[to + 19u] = h.y; found[to + 20u] = h.z;",
+        found[to + 18u] = h.x; found[to + 19u] = h.y; found[to + 20u] = h.z;
+        let w = shown_through(through, seen.clear, seen.rho_f, seen.rho_b,
+            internal_reflectance(film, vec3(given[at + 16u])),
+            internal_reflectance(film, vec3(1.0)));
+        let u = under_tone(w, p, front);
+        found[to + 21u] = w.x; found[to + 22u] = w.y; found[to + 23u] = w.z;
+        found[to + 24u] = u.x; found[to + 25u] = u.y; found[to + 26u] = u.z;",
         film.len(),
         literal(paper.alpha),
         literal(paper.eta),
@@ -456,7 +497,7 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
     let found = gpu.run(&text, &given, cases.len(), OUTPUTS);
     let mut without_straight = study.clone();
     without_straight.through.ballistic = DVec3::splat(1e4);
-    let (mut pairs, mut ways) = (Vec::new(), Vec::new());
+    let (mut pairs, mut ways, mut behind) = (Vec::new(), Vec::new(), Vec::new());
     for (case, found) in cases.iter().zip(found.chunks(OUTPUTS)) {
         let x = widen(case);
         let expected = spot(&x, paper, mean, study);
@@ -491,6 +532,14 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
         let crossed_terms = crossing_rounding(&x, study);
         // The logarithm of what passes is a sum of terms that cancel.
         let toned = toned_terms(&study.through) * UNIT_PRODUCT;
+        let of_other = shown(&x, study);
+        for (k, &gpu) in found[SHOWN..].iter().enumerate() {
+            let mut pair = Pair::new(gpu, of_other[k / 3][k % 3], RELATIVE);
+            // The tone is squared.
+            let tones = 2.0 * toned * (of_other[0][k % 3] - 1.0).abs();
+            pair.allowed += shown_rounding(&x, study) + tones;
+            behind.push(pair);
+        }
         for (k, &gpu) in found[..15].iter().enumerate() {
             let mut pair = Pair::new(gpu, expected[k / 3][k % 3], RELATIVE);
             let diffuse = diffuse + peak * pair.cpu;
@@ -500,13 +549,16 @@ pub fn compare_study(gpu: &Gpu, physics: &str, number: usize) -> Result<f64, Str
             pairs.push(pair);
         }
     }
+    let shows = judge(&format!("{name}: the other side's ink"), &behind, |i| {
+        format!("{:?}, output {}", cases[i / 6], SHOWN + i % 6)
+    })?;
     let either = judge(&format!("{name}: exchanged"), &ways, |i| {
         format!("{:?}, output {}", cases[i / 6], i % 6)
     })?;
     let alike = judge(name, &pairs, |i| {
         format!("{:?}, output {}", cases[i / 15], i % 15)
     })?;
-    Ok(either.max(alike))
+    Ok(either.max(alike).max(shows))
 }
 
 /// Ink and light through the sheet.
@@ -529,6 +581,12 @@ fn a_broken_study_is_found() {
         ("+ split.alike * alike", "- split.alike * alike"),
         ("lost * (m_i + m_o - split.captured)", "lost * (m_i + m_o)"),
         ("clamp(share, vec3(TONE_MIN), through.lightest)", "share"),
+        ("t * t * (back - before)", "t * (back - before)"),
+        (
+            "let slant = through.inner_mean - DIFFUSE_COSINE;",
+            "let slant = 0.0;",
+        ),
+        ("let dimmed = toned * toned", "let dimmed = toned"),
     ] {
         let physics = broken(sound, wrong);
         let outcome = compare_study(&gpu, &physics, 0);

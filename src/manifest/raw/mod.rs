@@ -12,7 +12,7 @@ pub mod values;
 
 use super::{
     decode::{Brief, Decode, Dictionary, List, Node, OfKind, OneOrMany, Report, Rule, required},
-    exhibit::{FlipAxis, SideName, Source},
+    exhibit::{FlipAxis, ShowThrough, SideName, Source},
     hotspot::MAX_PLACES,
     macros::{kinds, record},
 };
@@ -169,6 +169,10 @@ record! {
             /// The way it spreads more, in degrees anticlockwise from the right as the recto is
             /// seen. Without it: 0.
             anisotropy_deg: TurnDeg,
+            /// Where the other side's ink, as it shows in reflected light, comes from: photographed
+            /// (the pictures of the sides hold it) or modelled (they hold none, being generated or
+            /// cleaned, and the study tier computes it). Without it: photographed.
+            show_through: ShowThrough,
             /// Where these constants come from. Without it: assumed.
             source: Source,
         }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::super::{
     decode::{Decode, Node, Pattern, Report},
     document::Words,
-    exhibit::{CompareMode, FlipAxis, SideName, Source},
+    exhibit::{CompareMode, FlipAxis, ShowThrough, SideName, Source},
     fault::{did_you_mean, quoted_list},
     macros::{choice, number, pattern},
 };
@@ -168,6 +168,7 @@ pub(crate) trait Choice: Copy + 'static {
 
 choice! {
     SideName { Recto = "recto", Verso = "verso", }
+    ShowThrough { Photographed = "photographed", Modelled = "modelled", }
     Source { Measured = "measured", Fitted = "fitted", Assumed = "assumed", }
     FitKind {
         Shift = "shift",

@@ -182,6 +182,7 @@ impl Validator<'_, '_> {
             sheen: detail!(sheen),
             anisotropy: detail!(anisotropy),
             anisotropy_angle: Degrees(detail!(anisotropy_deg)),
+            show_through: details.and_then(|d| d.show_through).unwrap_or_default(),
             source: details.and_then(|d| d.source).unwrap_or(medium.source),
         })
     }

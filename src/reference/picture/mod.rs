@@ -20,7 +20,10 @@
 //!   the thickness of both (`sheet`); of several on one side, the first stands for all.
 //! - Grains are opaque facets that mirror, beside even light of the rest of the photograph
 //!   (`media`). Light neither passes between them and the paper nor under them.
-//! - On the other side grains stop light from behind; all else there is a film to it.
+//! - On the other side grains stop light from behind; all else there is a film to it. In reflected
+//!   light that film shows only through a side whose picture holds none of it
+//!   (`paper.show_through = "modelled"`); what a state changed there since the other side was photographed
+//!   is left as it was.
 //! - A transmission map is uneven thickness (`through`).
 //! - A surface as smooth as a mirror does not show the lamps.
 

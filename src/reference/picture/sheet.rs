@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     manifest::{
-        exhibit::{BARE_PAPER, Drawing, Exhibit, Paper, Scene, SideName, Surface},
+        exhibit::{BARE_PAPER, Drawing, Exhibit, Over, Paper, Scene, SideName, Surface},
         surface::SideSurface,
     },
     maps::{self, Coding, normal_coding},
@@ -65,6 +65,8 @@ pub(super) struct Sheet {
     /// The slab of a body colour, and what it absorbs.
     body: Option<(Layers, Tones)>,
     behind: Option<Behind>,
+    /// The other side's ink is in the light from before too: this side's picture holds none of it.
+    shows_through: bool,
     thinner: Option<Uneven>,
 }
 
@@ -151,6 +153,7 @@ impl Sheet {
             roughness,
             media,
             body,
+            shows_through: behind.is_some() && is_modelled(drawing, scene),
             behind,
             thinner,
         })
@@ -254,10 +257,15 @@ impl Sheet {
             let [clear] = field.at(place);
             layers.thickness_mm *= thinner.thickness(clear);
         }
+        let behind = tone.absorption(self.back_tau(place, rng));
         Spot::Layered {
             layers,
-            before: tone.absorption([0.0; 3]),
-            behind: tone.absorption(self.back_tau(place, rng)),
+            before: if self.shows_through {
+                behind
+            } else {
+                tone.absorption([0.0; 3])
+            },
+            behind,
         }
     }
 
@@ -413,8 +421,14 @@ fn overlays(drawing: &Drawing, scene: &Scene) -> Result<Vec<Overlay>, PictureErr
     Ok(laid)
 }
 
-/// What light from behind crosses: the other side's ink, and paper of uneven thickness. Where
-/// nothing shines from behind there is neither.
+/// Whether the walk is to find the other side's ink in reflected light: in what was photographed over
+/// it, it is already.
+fn is_modelled(drawing: &Drawing, scene: &Scene) -> bool {
+    drawing.photographed_over(scene.side, scene.state) == Over::Nothing
+}
+
+/// What light crosses within: the other side's ink, and paper of uneven thickness. Where nothing
+/// shines from behind there is no more than the ink that shows in reflected light.
 #[expect(
     clippy::too_many_arguments,
     reason = "parts of a sheet that is not yet put together"
@@ -435,7 +449,8 @@ fn through(
             .elevation_deg()
             .is_none_or(|e| e < 0.0)
     };
-    if scene.transmitted == 0.0 && !scene.lamps.iter().any(is_behind) {
+    let from_behind = scene.transmitted > 0.0 || scene.lamps.iter().any(is_behind);
+    if !from_behind && !is_modelled(drawing, scene) {
         return Ok((None, None));
     }
     let paper = &drawing.paper;
@@ -461,7 +476,7 @@ fn through(
         None => None,
     };
     let thinner = match &drawing.transmission {
-        Some(file) => {
+        Some(file) if from_behind => {
             let pyramid = maps::load_height(&file.path)?;
             let mean = maps::mean_of(&pyramid);
             let place = file.uv_from_side * drawing.recto_from(scene.side);
@@ -469,7 +484,7 @@ fn through(
             Field::new(pyramid, place)
                 .map(|field| (field, Thinner::new(layers, sigma_a, mean, paths, seed)))
         }
-        None => None,
+        _ => None,
     };
     Ok((behind, thinner))
 }
