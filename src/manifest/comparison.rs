@@ -515,9 +515,9 @@ mod tests {
         let curtain = Comparison {
             at: 0.6,
             angle: Degrees(25.0),
-            ..Comparison::new(CompareMode::Curtain, vec![Member::State(0); 3])
+            ..Comparison::new(CompareMode::Curtain, vec![Member::State(Some(0)); 3])
         };
-        let loupe = Comparison::new(CompareMode::Loupe, vec![Member::State(0); 2]);
+        let loupe = Comparison::new(CompareMode::Loupe, vec![Member::State(Some(0)); 2]);
         for comparison in [curtain, loupe] {
             let aspect = 1.6;
             let parts: Vec<Part> = match comparison.mode {
@@ -541,7 +541,7 @@ mod tests {
                 assert!(left != right, "{from}");
             }
         }
-        let aside = Comparison::new(CompareMode::SideBySide, vec![Member::State(0); 2]);
+        let aside = Comparison::new(CompareMode::SideBySide, vec![Member::State(Some(0)); 2]);
         assert!(aside.edges(1.6).is_empty());
     }
 

@@ -209,6 +209,49 @@ macro_rules! record {
     };
 }
 
+/// A record of one or several pictures, with the keys that say where they lie, and where they come
+/// from, added; `placed by` brings the words for these.
+macro_rules! placed_record {
+    (
+        $(#[doc = $doc:literal])+
+        pub struct $name:ident {
+            required { $($required:tt)* }
+            optional { $($optional:tt)* }
+            placed by {
+                $(#[doc = $register:literal])+
+                register,
+                $(#[doc = $points:literal])+
+                control_points,
+                $(#[doc = $source:literal])+
+                source,
+            }
+        }
+    ) => {
+        record! {
+            $(#[doc = $doc])+
+            pub struct $name {
+                required { $($required)* }
+                optional {
+                    $($optional)*
+                    $(#[doc = $register])+
+                    register: RawRegister,
+                    $(#[doc = $points])+
+                    control_points: List<RawControlPoint, 1, 1000>,
+                    /// What the points do: shift, similarity, affine or thin-plate. Without it: by
+                    /// their number, and never bend.
+                    fit: FitKind,
+                    $(#[doc = $source])+
+                    source: Source,
+                }
+                rules [
+                    Rule::AtMostOne(&["register", "control_points"]),
+                    Rule::Needs("fit", "control_points"),
+                ]
+            }
+        }
+    };
+}
+
 /// The kinds of something, each with a record of its own: `Variant(Record) = "word",`.
 macro_rules! kinds {
     (
@@ -268,4 +311,4 @@ macro_rules! kinds {
     };
 }
 
-pub(crate) use {choice, kinds, number, pattern, record};
+pub(crate) use {choice, kinds, number, pattern, placed_record, record};

@@ -14,7 +14,7 @@ use super::{
     decode::{Brief, Decode, Dictionary, List, Node, OfKind, OneOrMany, Report, Rule, required},
     exhibit::{FlipAxis, ShowThrough, SideName, Source},
     hotspot::MAX_PLACES,
-    macros::{kinds, record},
+    macros::{kinds, placed_record, record},
 };
 use crate::{
     maps::{ColourEncoding, ColourMapName, MAX_WEIGHTS, NormalY, registration::FitKind},
@@ -426,7 +426,7 @@ record! {
 /// A thematic map.
 pub type RawOverlay = OfKind<RawOverlayCommon, RawOverlayKind>;
 
-record! {
+placed_record! {
     /// A thematic map laid over the sheet.
     pub struct RawOverlayCommon {
         required {
@@ -440,20 +440,15 @@ record! {
             title: RawWording,
             /// The side that it belongs to. Without it: recto.
             side: SideName,
-            /// How it lies on the sheet, where it does not cover it exactly.
-            register: RawRegister,
-            /// Points of the picture and where they lie on the sheet.
-            control_points: List<RawControlPoint, 1, 1000>,
-            /// What the points do: shift, similarity, affine or thin-plate. Without it: by their
-            /// number, and never bend.
-            fit: FitKind,
-            /// Where it comes from. Without it: assumed.
-            source: Source,
         }
-        rules [
-            Rule::AtMostOne(&["register", "control_points"]),
-            Rule::Needs("fit", "control_points"),
-        ]
+        placed by {
+            /// How it lies on the sheet, where it does not cover it exactly.
+            register,
+            /// Points of the picture and where they lie on the sheet.
+            control_points,
+            /// Where it comes from. Without it: assumed.
+            source,
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::{
     super::{
         decode::{Dictionary, List, Rule},
         exhibit::{SideName, Source},
-        macros::record,
+        macros::{placed_record, record},
     },
     RawControlPoint, RawRegister, RawWording,
     values::{BandKey, BandNm, FilePath, Id, Reflectance, Weight},
@@ -14,7 +14,7 @@ use crate::maps::{ColourEncoding, registration::FitKind};
 /// The most bands of one stack.
 pub const MAX_BANDS: usize = 64;
 
-record! {
+placed_record! {
     /// Pictures of one side in several bands of light, each of how much it reflects there.
     pub struct RawStack {
         required {
@@ -31,29 +31,24 @@ record! {
             /// How its pictures' values encode reflectance. Without it: by the embedded ICC
             /// profile, or else sRGB for integers and linear for floats.
             encoding: ColourEncoding,
-            /// How the bands lie on the sheet that do not say so themselves, where they do not
-            /// cover it exactly.
-            register: RawRegister,
-            /// Points of these bands' pictures and where they lie on the sheet.
-            control_points: List<RawControlPoint, 1, 1000>,
-            /// What the points do: shift, similarity, affine or thin-plate. Without it: by their
-            /// number, and never bend.
-            fit: FitKind,
             /// Bands shown as red, green and blue.
             false_colour: List<RawFalseColour>,
             /// Bands shown against each other.
             difference: List<RawDifference>,
-            /// Where it comes from. Without it: assumed.
-            source: Source,
         }
-        rules [
-            Rule::AtMostOne(&["register", "control_points"]),
-            Rule::Needs("fit", "control_points"),
-        ]
+        placed by {
+            /// How the bands lie on the sheet that do not say so themselves, where they do not
+            /// cover it exactly.
+            register,
+            /// Points of these bands' pictures and where they lie on the sheet.
+            control_points,
+            /// Where it comes from. Without it: assumed.
+            source,
+        }
     }
 }
 
-record! {
+placed_record! {
     /// One band.
     pub struct RawBand {
         required {
@@ -62,21 +57,15 @@ record! {
             /// The middle of the band in nm.
             wavelength_nm: BandNm,
         }
-        optional {
+        optional {}
+        placed by {
             /// How it lies on the sheet, where it does not lie as the stack says.
-            register: RawRegister,
+            register,
             /// Points of the picture and where they lie on the sheet.
-            control_points: List<RawControlPoint, 1, 1000>,
-            /// What the points do: shift, similarity, affine or thin-plate. Without it: by their
-            /// number, and never bend.
-            fit: FitKind,
-            /// Where it comes from.
-            source: Source,
+            control_points,
+            /// Where it comes from. Without it: as the stack says.
+            source,
         }
-        rules [
-            Rule::AtMostOne(&["register", "control_points"]),
-            Rule::Needs("fit", "control_points"),
-        ]
     }
 }
 
