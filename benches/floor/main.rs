@@ -279,7 +279,7 @@ impl Setting {
             Self::SideBySide => Some(CompareMode::SideBySide),
             _ => None,
         };
-        let states = || vec![Member::State(0), Member::State(1)];
+        let states = || vec![Member::State(Some(0)), Member::State(Some(1))];
         scene.compare = mode.map(|mode| Comparison::new(mode, states()));
         if self == Self::Farther {
             scene.camera.width_mm *= SQRT_2;

@@ -164,7 +164,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         title: say(&overlay.title),
         words: reading
             .as_ref()
-            .map_or_else(|| "nothing".to_owned(), |reading| reading.words(&say)),
+            .map_or_else(|| "nothing".to_owned(), |reading| reading.words(say)),
         says: Says::of(reading, &say),
     };
     let probe = Probe {

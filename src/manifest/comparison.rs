@@ -257,6 +257,15 @@ impl Comparison {
         }
     }
 
+    /// The parts of members beside each other; none where they share one picture.
+    pub fn cells(&self) -> Vec<Part> {
+        let count = match self.mode {
+            CompareMode::SideBySide => self.of.len(),
+            _ => 0,
+        };
+        (0..count).map(|k| Part::cell(k, count)).collect()
+    }
+
     /// Where members that have parts of a picture of `aspect` meet: lines through places of it, of a
     /// curtain straight ones, of a loupe a closed one around it.
     pub fn edges(&self, aspect: f64) -> Vec<Vec<DVec2>> {
@@ -396,10 +405,9 @@ impl Exhibit {
     /// Width over height of what a scene's camera fills in a picture of `aspect`: of one of those beside
     /// each other its cell.
     pub fn own_aspect(&self, scene: &Scene, aspect: f64) -> f64 {
-        let parts = self.parts(scene, aspect);
-        parts
-            .first()
-            .map_or(aspect, |(_, part)| part.aspect(aspect))
+        let cells = scene.compare.as_ref().map(Comparison::cells);
+        let cell = cells.and_then(|cells| cells.first().copied());
+        cell.unwrap_or(Part::WHOLE).aspect(aspect)
     }
 
     /// All that a scene shows, as scenes without comparisons: its members, or itself.

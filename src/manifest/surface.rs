@@ -12,12 +12,12 @@ use crate::maps::{self, MapError};
 /// Quads along the longer edge of a curled sheet, at most, and those of coarser grids, which stand for
 /// it where a curl is gentle: small triangles cost a software driver more than the pixels in them.
 const QUADS: usize = 96;
-const COARSER: [usize; 3] = [12, 24, 48];
+const COARSER: [usize; 2] = [12, 48];
 /// How far a coarser grid may lie from the finest: normals in radians, RMS and at most, which changes
-/// light at 10° above the sheet by .6% and 2.3%, and places in mm.
+/// light at 10° above the sheet by .6% and 2.3%, and places in mm, a tenth of a thin sheet.
 const SAME_NORMAL: f64 = 1e-3;
 const NEAR_NORMAL: f64 = 4e-3;
-const SAME_MM: f64 = 0.05;
+const SAME_MM: f64 = 0.0125;
 /// How far a flat sheet's mesh reaches beyond its edge, as a share of its size: room for the
 /// smooth step that the shader draws there.
 const MARGIN: f64 = 0.01;

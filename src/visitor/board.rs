@@ -40,6 +40,9 @@ pub struct Written {
     size: f32,
 }
 
+/// The number of the profile that was plotted last, and its plot.
+type Plotted = Option<(u64, Handle<Image>)>;
+
 /// Writes what changed.
 pub fn write(
     mut commands: Commands,
@@ -48,7 +51,7 @@ pub fn write(
     cameras: Query<(Entity, &TextCamera)>,
     boards: Query<Entity, With<Board>>,
     mut images: ResMut<Assets<Image>>,
-    (mut last, mut plotted): (Local<Written>, Local<Option<(u64, Handle<Image>)>>),
+    (mut last, mut plotted): (Local<Written>, Local<Plotted>),
 ) {
     let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
         return;

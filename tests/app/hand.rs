@@ -596,3 +596,44 @@ fn a_comparison_with_a_drawing_that_is_gone_goes_with_it() {
     assert_eq!(hand.shown().scene.compare, None);
     assert_eq!(hand.shown().members().len(), 1);
 }
+
+#[test]
+fn sheets_beside_each_other_follow_the_finger_that_holds_one() {
+    let (_folder, mut hand) = hand("whole");
+    while hand.shown().scene.compare.as_ref().map(|c| c.mode) != Some(CompareMode::SideBySide) {
+        hand.apply(Intent::StepCompare(1));
+    }
+    // The whole sheet fits into its cell, which is half as wide as the picture.
+    let size = hand.shown().exhibit.drawing_of(&hand.shown().scene).size_mm;
+    let width = hand.shown().scene.camera.width_mm;
+    assert!(
+        width < 1.1 * size.x.max(size.y * PICTURE.aspect / 2.0),
+        "{width}"
+    );
+    hand.apply(Intent::Zoom {
+        at: DVec2::new(-0.5, 0.0),
+        factor: 4.0,
+    });
+    settle(&mut hand);
+    let camera = hand.shown().scene.camera;
+    let (centre, width) = (camera.centre_mm, camera.width_mm);
+    // Zoomed about the middle of the recto's cell, it is still in the middle.
+    assert!(centre.distance(size / 2.0) < NEAR_MM, "{centre}");
+    // By a tenth of the picture, in a cell that is half of it.
+    for (from, sign) in [(-0.5, -1.0), (0.5, 1.0)] {
+        let before = hand.shown().scene.camera.centre_mm;
+        hand.apply(Intent::Take);
+        hand.apply(Intent::Drag {
+            from: DVec2::new(from, 0.0),
+            to: DVec2::new(from + 0.1, 0.0),
+        });
+        let moved = hand.shown().scene.camera.centre_mm.x - before.x;
+        hand.apply(Intent::Release);
+        settle(&mut hand);
+        // The recto moves with the finger; the verso's left is the recto's right.
+        assert!(
+            (moved - sign * 0.1 * width).abs() < NEAR_MM,
+            "{moved} {width}"
+        );
+    }
+}

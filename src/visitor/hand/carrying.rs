@@ -7,7 +7,8 @@ use glam::{DQuat, DVec2, DVec3};
 
 use super::{ARRIVED, FARTHEST_TURN_DEG, Grip, Hand, Speed};
 use crate::manifest::{
-    exhibit::{Camera, Comparison, SideName},
+    comparison::Part,
+    exhibit::{Camera, Comparison, FlipAxis, Member, SideName},
     eye::Eye,
     frames::other_side,
 };
@@ -21,16 +22,62 @@ const NARROWEST_MM: f64 = 2.0;
 /// A picture narrower than the whole sheet by this factor is zoomed in.
 const ZOOMED: f64 = 0.85;
 
+/// The part of the picture in which a hand holds a sheet.
+struct Cell {
+    part: Part,
+    /// Signs of right and up on the table: a sheet that shows its other side goes the other way.
+    mirror: DVec2,
+}
+
 impl Hand {
     /// The camera in a picture of this shape.
     pub(super) fn camera(&self) -> Camera {
         let size = self.drawing().size_mm;
-        self.view.camera.fitted(size, self.picture.aspect)
+        self.view.camera.fitted(size, self.aspect())
+    }
+
+    /// Width over height of the sheet's own picture: of sheets beside each other, of a cell.
+    fn aspect(&self) -> f64 {
+        self.cell(DVec2::ZERO).part.aspect(self.picture.aspect)
+    }
+
+    /// Width in mm of the sheet that is as wide as its own picture on the display.
+    pub(super) fn true_width_mm(&self) -> f64 {
+        self.picture.width_mm * self.cell(DVec2::ZERO).part.scale.x
+    }
+
+    /// Of sheets beside each other, the one at a place of the picture.
+    fn cell(&self, at: DVec2) -> Cell {
+        let whole = Cell {
+            part: Part::WHOLE,
+            mirror: DVec2::ONE,
+        };
+        let Some(comparison) = &self.view.compare else {
+            return whole;
+        };
+        let cells = comparison.cells();
+        let found = cells.iter().zip(&comparison.of);
+        let mut found = found.filter(|(part, _)| part.shows(at, self.picture.aspect));
+        // Beyond the picture's edge a drag goes on as it began.
+        let Some((part, member)) = found.next().or(cells.first().zip(comparison.of.first())) else {
+            return whole;
+        };
+        let mirror = match member {
+            Member::Side(side) if *side != self.view.side => match self.drawing().flip {
+                FlipAxis::Vertical => DVec2::new(-1.0, 1.0),
+                FlipAxis::Horizontal => DVec2::new(1.0, -1.0),
+            },
+            _ => DVec2::ONE,
+        };
+        Cell {
+            part: *part,
+            mirror,
+        }
     }
 
     /// The widest picture in mm: the whole sheet, or more if the scene says so.
     fn widest(&self) -> f64 {
-        let fit = |camera: Camera| camera.fitted(self.drawing().size_mm, self.picture.aspect);
+        let fit = |camera: Camera| camera.fitted(self.drawing().size_mm, self.aspect());
         let whole = fit(Camera::whole_sheet(self.drawing().size_mm));
         whole.width_mm.max(fit(self.written().camera).width_mm)
     }
@@ -81,15 +128,20 @@ impl Hand {
 
     /// Brings what lies at `from` to `to`.
     pub(super) fn shift(&mut self, from: DVec2, to: DVec2) {
-        if let (Some(start), Some(end)) = (self.table_point(from), self.table_point(to)) {
-            self.move_centre(start - end);
-            self.speed.push(start - end);
+        // The sheet that was taken is moved, and the others with it.
+        let cell = self.cell(from);
+        let places = (self.table_point(from, &cell), self.table_point(to, &cell));
+        if let (Some(start), Some(end)) = places {
+            let by = (start - end) * cell.mirror;
+            self.move_centre(by);
+            self.speed.push(by);
         }
     }
 
-    fn table_point(&self, at: DVec2) -> Option<DVec2> {
+    fn table_point(&self, at: DVec2, cell: &Cell) -> Option<DVec2> {
         let eye = Eye::new(&self.camera(), self.drawing().size_mm);
-        let point = eye.table_point(at, self.picture.aspect)?;
+        let own = (at - cell.part.shift) / cell.part.scale;
+        let point = eye.table_point(own, cell.part.aspect(self.picture.aspect))?;
         Some(point.truncate())
     }
 
@@ -106,7 +158,7 @@ impl Hand {
         camera.width_mm = self.within_reach(camera.width_mm);
         // The picture stays within the widest one, which is centred.
         let spare = (widest - camera.width_mm) / 2.0;
-        let spare = DVec2::new(spare, spare / self.picture.aspect);
+        let spare = DVec2::new(spare, spare / self.aspect());
         let seen = self.on_table(DVec2::X).abs();
         let reach = DVec2::new(
             seen.x * spare.x + seen.y * spare.y,
@@ -116,7 +168,7 @@ impl Hand {
         camera.centre_mm = camera.centre_mm.clamp(middle - reach, middle + reach);
         let whole = Camera::whole_sheet(size);
         // The whole sheet goes on filling a picture that changes its shape.
-        self.view.camera = if camera == whole.fitted(size, self.picture.aspect) {
+        self.view.camera = if camera == whole.fitted(size, self.aspect()) {
             whole
         } else {
             camera
@@ -124,14 +176,15 @@ impl Hand {
     }
 
     pub(super) fn set_width(&mut self, width_mm: f64, at: DVec2) {
-        let before = self.table_point(at);
+        let cell = self.cell(at);
+        let before = self.table_point(at, &cell);
         let camera = Camera {
             width_mm,
             ..self.camera()
         };
         self.set_camera(camera);
-        if let (Some(before), Some(after)) = (before, self.table_point(at)) {
-            self.move_centre(before - after);
+        if let (Some(before), Some(after)) = (before, self.table_point(at, &cell)) {
+            self.move_centre((before - after) * cell.mirror);
         }
     }
 
@@ -146,7 +199,7 @@ impl Hand {
 
     pub(super) fn true_size(&mut self, at: DVec2) {
         let width = self.zoom.map_or(self.camera().width_mm, |(width, _)| width);
-        let target = self.within_reach(self.picture.width_mm);
+        let target = self.within_reach(self.true_width_mm());
         if (width / target - 1.0).abs() < 2.0 * ARRIVED {
             let back = self.before_true_size.take().unwrap_or(self.widest());
             self.zoom_to(back, at);

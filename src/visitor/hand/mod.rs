@@ -463,7 +463,7 @@ impl Hand {
     /// Whether the sheet is seen at true size, and if so whether the display's size is known.
     pub fn at_true_size(&self) -> Option<bool> {
         let width = self.camera().width_mm;
-        let at_true = (width / self.picture.width_mm - 1.0).abs() < 2.0 * ARRIVED;
+        let at_true = (width / self.true_width_mm() - 1.0).abs() < 2.0 * ARRIVED;
         at_true.then_some(self.picture.measured)
     }
 
