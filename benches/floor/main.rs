@@ -29,7 +29,7 @@ use recto::{
     },
     optics::tier::Tier,
     shot::{Darkroom, Picture},
-    stage::{Shown, TABLE},
+    stage::{Arranged, Shown, TABLE},
     units::{Degrees, Lux, Nits},
 };
 
@@ -177,6 +177,8 @@ fn main() -> Result<(), Anything> {
             let shown = Shown::at_rest(Arc::new(exhibit), scene, tier, 1.0);
             let mut room = Darkroom::with(1, |app| {
                 app.add_plugins((FloorPlugin, hand::HandPlugin, RenderDiagnosticsPlugin));
+                // As in a window.
+                app.world_mut().resource_mut::<Arranged>().clip(true);
             })?;
             let picture = room.take(shown.clone(), [SIZE, SIZE])?;
             // A picture taken is a room at rest: frames begin again.

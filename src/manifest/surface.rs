@@ -1,6 +1,8 @@
 //! The sheet's shape: flat, curled by a height map, or modelled in a glTF file; and the same
 //! shape seen from its other side. Every renderer takes it from here.
 
+mod net;
+
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -9,15 +11,13 @@ use super::{
 };
 use crate::maps::{self, MapError};
 
-/// Quads along the longer edge of a curled sheet, at most, and those of coarser grids, which stand for
-/// it where a curl is gentle: small triangles cost a software driver more than the pixels in them.
-const QUADS: usize = 96;
-const COARSER: [usize; 2] = [12, 48];
-/// How far a coarser grid may lie from the finest: normals in radians, RMS and at most, which changes
-/// light at 10° above the sheet by .6% and 2.3%, and places in mm, a tenth of a thin sheet.
-const SAME_NORMAL: f64 = 1e-3;
-const NEAR_NORMAL: f64 = 4e-3;
+/// Columns and rows of the finest quads of a curled sheet, a power of two. Where a curl is gentle its
+/// triangles are larger: small ones cost a software driver more than the pixels in them.
+const QUADS: usize = 128;
+/// How far a triangle may lie from the finest ones, in mm: a tenth of a thin sheet.
 const SAME_MM: f64 = 0.0125;
+/// And its normals, in radians: 1% of the light at 10° above the sheet.
+const SAME_NORMAL: f64 = 2e-3;
 /// How far a flat sheet's mesh reaches beyond its edge, as a share of its size: room for the
 /// smooth step that the shader draws there.
 const MARGIN: f64 = 0.01;
@@ -43,48 +43,43 @@ impl SideSurface {
 
     /// A sheet whose height in mm over each place of the side frame is `height`.
     pub fn curled(size_mm: DVec2, height: impl Fn(DVec2) -> f64) -> Self {
-        let longer = size_mm.max_element();
-        let grid = |quads: usize| {
-            let count = |mm: f64| ((quads as f64 * mm / longer).round() as usize).max(1);
-            let size = [count(size_mm.x), count(size_mm.y)];
-            (size, Self::grid(size_mm, size[0], size[1], 0.0, &height))
-        };
-        let (fine_size, fine) = grid(QUADS);
-        let coarser = COARSER.into_iter().map(grid);
-        let mut close =
-            coarser.filter(|(size, coarse)| coarse.is_close_to(*size, &fine, fine_size));
-        close.next().map_or(fine.clone(), |(_, coarse)| coarse)
+        Self::curled_within(SAME_MM, size_mm, height)
     }
 
-    /// Whether a grid of so many columns and rows lies where a finer one does, as far as is seen.
-    fn is_close_to(&self, size: [usize; 2], fine: &Self, fine_size: [usize; 2]) -> bool {
-        let [columns, rows] = fine_size;
-        let mut squares = 0.0;
-        for (k, (position, normal)) in fine.positions.iter().zip(&fine.normals).enumerate() {
-            let at = [k % (columns + 1), k / (columns + 1)];
-            let [(x, u), (y, v)] = [0, 1].map(|axis| {
-                let place = at[axis] as f64 / fine_size[axis] as f64 * size[axis] as f64;
-                let cell = (place as usize).min(size[axis] - 1);
-                (cell, place - cell as f64)
+    /// The same, whose triangles lie no farther than about `within_mm` from the finest.
+    pub fn curled_within(within_mm: f64, size_mm: DVec2, height: impl Fn(DVec2) -> f64) -> Self {
+        let fine = Self::grid(size_mm, QUADS, QUADS, 0.0, height);
+        let off = |[a, b, m]: [usize; 3]| {
+            let between = |of: &[DVec3]| of[a].midpoint(of[b]);
+            let off = between(&fine.positions).distance(fine.positions[m]) / within_mm;
+            let leaning = between(&fine.normals).normalize();
+            off.max(leaning.angle_between(fine.normals[m]) / SAME_NORMAL)
+        };
+        let triangles = net::triangles(QUADS, off);
+        fine.with_triangles(&triangles)
+    }
+
+    /// Of its vertices, those of some triangles.
+    fn with_triangles(&self, triangles: &[[usize; 3]]) -> Self {
+        let mut taken: Vec<Option<u32>> = vec![None; self.positions.len()];
+        let mut some = Self {
+            positions: Vec::new(),
+            side: Vec::new(),
+            normals: Vec::new(),
+            tangents: Vec::new(),
+            indices: Vec::new(),
+        };
+        for &vertex in triangles.iter().flatten() {
+            let index = *taken[vertex].get_or_insert_with(|| {
+                some.positions.push(self.positions[vertex]);
+                some.side.push(self.side[vertex]);
+                some.normals.push(self.normals[vertex]);
+                some.tangents.push(self.tangents[vertex]);
+                some.positions.len() as u32 - 1
             });
-            let a = y * (size[0] + 1) + x;
-            let b = a + size[0] + 1;
-            // The two triangles of a quad, as `grid` lays them.
-            let between = |of: &[DVec3]| match u + v <= 1.0 {
-                true => of[a] + (of[a + 1] - of[a]) * u + (of[b] - of[a]) * v,
-                false => {
-                    let far = of[b + 1];
-                    far + (of[b] - far) * (1.0 - u) + (of[a + 1] - far) * (1.0 - v)
-                }
-            };
-            let leaning = between(&self.normals).normalize().angle_between(*normal);
-            let off = between(&self.positions).distance(*position);
-            if !(off <= SAME_MM && leaning <= NEAR_NORMAL) {
-                return false;
-            }
-            squares += leaning * leaning;
+            some.indices.push(index);
         }
-        squares <= SAME_NORMAL * SAME_NORMAL * ((columns + 1) * (rows + 1)) as f64
+        some
     }
 
     /// The recto's surface of a sheet of `size_mm`.
@@ -289,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gentle_curl_has_few_triangles_and_a_crease_has_them_all() {
+    fn a_curl_has_no_more_triangles_than_it_needs() {
         let count = |height: &dyn Fn(DVec2) -> f64| {
             let surface = SideSurface::curled(SIZE, height);
             // Wherever it is looked at, the surface is where it should be.
@@ -309,14 +304,20 @@ mod tests {
                 });
                 let off = (found.expect("on the sheet") - height(at)).abs();
                 // Half a fine quad of the crease lies beside its edge.
-                assert!(off <= 2.0 * SAME_MM + 0.11, "{at}: {off}");
+                assert!(off <= 2.0 * SAME_MM + 0.16, "{at}: {off}");
             }
             surface.indices.len() / 3
         };
-        let all = 2 * QUADS * QUADS / 2;
-        assert!(count(&|_| 0.0) <= 2 * 12 * 6);
-        assert!(count(&|at| 0.5 * (at.x / 60.0).sin() + at.y * 0.02) <= all / 4);
-        assert_eq!(count(&|at| 0.2 * (at.x - 101.0).abs()), all);
+        assert_eq!(count(&|_| 0.0), 2);
+        let gentle = count(&|at| 0.5 * (at.x / 60.0).sin() + at.y * 0.02);
+        let creased = count(&|at| 0.2 * (at.x - 101.0).abs());
+        assert!(
+            gentle < creased && creased < QUADS * QUADS,
+            "{gentle} {creased}"
+        );
+        // What is rough everywhere has nearly all of them.
+        let rough = count(&|at| 0.05 * (at.x * 1.1).sin() * (at.y * 2.3).sin());
+        assert!(rough > 2 * QUADS * QUADS * 9 / 10, "{rough}");
     }
 
     #[test]

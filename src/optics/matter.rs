@@ -463,3 +463,28 @@ fn layer_photographed(tau: f64, r_b: f64, below: f64) -> Body {
     }
     layer_of_pigment(tau, 0.5 * (low + high))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paint_over_paper_reflects_what_was_photographed() {
+        for tau in [0.5, 2.0, 10.0] {
+            for below in [0.1, 0.6] {
+                let clear = layer_of_pigment(tau, 0.0).backed(below);
+                for share in [0.3, 0.7, 0.95] {
+                    let r_b = share * clear;
+                    let layer = layer_photographed(tau, r_b, below);
+                    assert!(
+                        (layer.backed(below) - r_b).abs() < 1e-9,
+                        "{tau} {below} {share}"
+                    );
+                }
+                // Lighter than without any absorption is as light as that.
+                let white = layer_photographed(tau, 1.1 * clear, below);
+                assert!((white.backed(below) - clear).abs() < 1e-12);
+            }
+        }
+    }
+}

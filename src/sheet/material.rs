@@ -77,7 +77,7 @@ pub struct PaperMaterial {
     /// Drawn into a window: at the display's level, and with half an 8-bit step of noise
     /// against banding. Files stay exact.
     pub display: bool,
-    /// The device can clip by lines: without, it shades what other members show and drops it.
+    /// Clipped by lines, which the device can: without, it shades what other members show and drops it.
     pub clips: bool,
 }
 

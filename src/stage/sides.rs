@@ -46,6 +46,8 @@ use crate::{
 #[derive(Resource)]
 pub struct Arranged {
     display: bool,
+    /// Parts of a comparison are clipped, where the device can.
+    clips: bool,
     /// Of each member of what is shown.
     needs: Option<Vec<(Needs, Request)>>,
     /// Whether they are drawn for a last pass.
@@ -72,6 +74,7 @@ impl Arranged {
     pub(super) fn new(display: bool) -> Self {
         Self {
             display,
+            clips: display,
             needs: None,
             composite: false,
             drawings: Vec::new(),
@@ -90,6 +93,13 @@ impl Arranged {
     /// Whether the stage shows what [`Shown`] says, with all its maps.
     pub fn is_settled(&self) -> bool {
         self.settled
+    }
+
+    /// Spares what other members of a comparison show, or shades it and drops it. Clipped triangles are
+    /// interpolated otherwise in the last bits: windows are to be fast, and files exact.
+    pub fn clip(&mut self, clips: bool) {
+        self.clips = clips;
+        self.reset();
     }
 
     /// Whether pictures are drawn into a window.
@@ -137,8 +147,8 @@ pub fn arrange(
     if arranged.settled && !shown.is_changed() {
         return;
     }
-    let clips =
-        device.is_some_and(|device| device.features().contains(WgpuFeatures::CLIP_DISTANCES));
+    let clips = arranged.clips
+        && device.is_some_and(|device| device.features().contains(WgpuFeatures::CLIP_DISTANCES));
     let members = shown.members();
     let wanted: Vec<(Needs, Request)> = members
         .iter()

@@ -93,7 +93,7 @@ pub fn is_for_tool(intent: Intent) -> bool {
     )
 }
 
-/// Follows wishes that are about tools and the pointer.
+/// Follows wishes that are about tools and the pointer, once what is shown is what the hand holds.
 pub fn follow(
     mut intents: MessageReader<Intent>,
     (hand, shown, shape): (Res<Hand>, Res<Shown>, Res<Shape>),

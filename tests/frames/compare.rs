@@ -14,7 +14,7 @@ use recto::{
     maps::ColourMapName,
     optics::tier::Tier,
     shot::{Darkroom, Picture},
-    stage::TABLE,
+    stage::{Arranged, TABLE},
 };
 
 use crate::{crop, room};
@@ -96,8 +96,8 @@ fn composed(alone: &[Picture], parts: &[Part]) -> Picture {
     composed
 }
 
-/// As a file: where a part is clipped or drawn into a cell of its own, the rasteriser rounds the last
-/// bits of its light otherwise.
+/// As a file: where a part is drawn into a cell of its own, the rasteriser rounds the last bits of its
+/// light otherwise.
 fn print(picture: &Picture) -> Print {
     Print::develop(picture.width, picture.height, &picture.pixels, &[], 1.0)
 }
@@ -117,11 +117,26 @@ fn a_curtain_is_its_members_bit_by_bit() {
             pairs.filter(|(a, b)| a != b).count()
         };
         assert_eq!(differing(&found_print, &expected_print), 0, "{at} {angle}");
+        assert!(found.pixels == expected.pixels, "{at} {angle}: their light");
         // Exchanged, the members are told apart.
         let exchanged: Vec<Picture> = alone.iter().rev().cloned().collect();
         let wrong = composed(&exchanged, &parts);
         assert!(room::largest_difference(&found, &wrong) > 20.0 * STEP);
     }
+}
+
+#[test]
+fn a_window_s_clipped_curtain_is_that_of_a_file_as_far_as_is_seen() {
+    let mut compared = Compared::new(CompareMode::Curtain);
+    compared.comparison().angle.0 = 35.0;
+    let exact = compared.picture();
+    compared.room = room::darkroom(1);
+    let world = compared.room.world();
+    world.resource_mut::<Arranged>().clip(true);
+    let clipped = compared.picture();
+    assert!(room::largest_difference(&clipped, &exact) < STEP);
+    compared.comparison().at = 0.6;
+    assert!(room::largest_difference(&compared.picture(), &exact) > 20.0 * STEP);
 }
 
 #[test]
