@@ -227,8 +227,14 @@ impl Asked {
             let mut desk = Desk::new(&exhibit, scene.clone());
             for Wanted { option, tool } in self.0 {
                 let tool = tool.and_then(|tool| placed(tool, &option, sight.as_ref(), scene.side));
-                match tool.map(|(tool, screen_mm)| (with_state(tool, state), screen_mm)) {
-                    Ok((tool, screen_mm)) => match desk.read(&tool, screen_mm) {
+                match tool {
+                    Ok(Placed {
+                        tool,
+                        screen_mm,
+                        of,
+                    }) => match on(&mut desk, &exhibit, of.unwrap_or(&scene))
+                        .read(&with_state(tool, state), screen_mm)
+                    {
                         Ok(reading) => read.push(reading),
                         Err(errors) => {
                             let told = errors.iter().map(|error| told(&exhibit, &option, error));
@@ -384,23 +390,50 @@ fn state(exhibit: &Exhibit, scene: &Scene, id: &str) -> Result<Option<usize>, Bo
         })
 }
 
-/// The tool with its places in mm, and the size of a pixel there.
-fn placed(
+/// A tool with its places in mm.
+struct Placed<'s> {
+    tool: Tool,
+    /// Size of a pixel there, in mm.
+    screen_mm: f64,
+    /// The member of a comparison that its places were seen on.
+    of: Option<&'s Scene>,
+}
+
+/// The same desk, at another member of a comparison.
+fn on<'d, 'e>(desk: &'d mut Desk<'e>, exhibit: &'e Exhibit, scene: &Scene) -> &'d mut Desk<'e> {
+    let shelf = std::mem::replace(desk, Desk::new(exhibit, scene.clone())).clear();
+    *desk = Desk::with(exhibit, scene.clone(), shelf);
+    desk
+}
+
+/// The tool with its places in mm.
+fn placed<'s>(
     tool: Tool,
     option: &str,
-    sight: Option<&Sight>,
+    sight: Option<&'s Sight>,
     side: SideName,
-) -> Result<(Tool, f64), Vec<Fault>> {
+) -> Result<Placed<'s>, Vec<Fault>> {
     let Some(sight) = sight else {
-        return Ok((tool, 0.0));
+        return Ok(Placed {
+            tool,
+            screen_mm: 0.0,
+            of: None,
+        });
     };
+    let mut of: Vec<&Scene> = Vec::new();
     let mut screen_mm = 0.0f64;
     let mut faults = Vec::new();
     // What curls up far enough shows its back.
     let seen = |pixel: DVec2| sight.seen(pixel).filter(|seen| seen.side == side);
     let mut place = |pixel: DVec2| match seen(pixel) {
-        Some(Seen { mm, pixel_mm, .. }) => {
+        Some(Seen {
+            mm,
+            pixel_mm,
+            sheet,
+            ..
+        }) => {
             screen_mm = screen_mm.max(pixel_mm);
+            of.extend(sight.scene(sheet));
             mm
         }
         None => {
@@ -431,8 +464,20 @@ fn placed(
             closed,
         },
     };
+    if of.iter().any(|member| member.state != of[0].state) {
+        faults.push(fault(
+            option,
+            "places on members in different states",
+            "places on one member",
+            "move them, or give two tools",
+        ));
+    }
     if faults.is_empty() {
-        Ok((tool, screen_mm))
+        Ok(Placed {
+            tool,
+            screen_mm,
+            of: of.first().copied(),
+        })
     } else {
         Err(faults)
     }

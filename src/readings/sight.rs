@@ -39,6 +39,8 @@ pub struct Sight {
     /// The recto's.
     surface: Arc<SideSurface>,
     sheets: Vec<Lying>,
+    /// Of each sheet, if it was made from one.
+    scenes: Vec<Scene>,
 }
 
 /// A place that is seen.
@@ -71,19 +73,24 @@ impl Sight {
         };
         let unread = |error: MapError| ReadingError::Map { path, error };
         let surface = SideSurface::load(&drawing.surface, size_mm).map_err(unread)?;
-        let parts = exhibit
+        let (scenes, parts): (Vec<Scene>, Vec<Lying>) = exhibit
             .parts(scene, aspect)
             .into_iter()
             .filter(|(member, _)| (member.drawing, member.side) == (scene.drawing, scene.side))
             .map(|(member, part)| {
                 let camera = member.camera.fitted(size_mm, part.aspect(aspect));
-                Lying {
+                let lying = Lying {
                     eye: Eye::new(&camera, size_mm),
                     part,
                     pose: drawing.rest_pose(member.side),
-                }
-            });
-        Ok(Self::of(drawing, Arc::new(surface), size, parts.collect()))
+                };
+                (member, lying)
+            })
+            .unzip();
+        Ok(Self {
+            scenes,
+            ..Self::of(drawing, Arc::new(surface), size, parts)
+        })
     }
 
     /// Of the sheet of `drawing` with the recto's `surface`, lying as `sheets` in a picture of `size`
@@ -100,7 +107,14 @@ impl Sight {
             flip: drawing.flip,
             surface,
             sheets,
+            scenes: Vec::new(),
         }
+    }
+
+    /// The scene, without a comparison, whose sheet number `sheet` is seen; `None` where only the
+    /// sheets are known.
+    pub fn scene(&self, sheet: usize) -> Option<&Scene> {
+        self.scenes.get(sheet)
     }
 
     /// What is seen at a place of the picture, in pixels from its top left corner (so that the

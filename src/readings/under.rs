@@ -6,8 +6,8 @@ use super::{Desk, Disc, ReadingError, pictures, words};
 use crate::{
     manifest::{
         Wording,
-        exhibit::{Member, Stack},
-        readout::{CurvePoint, ReadFault},
+        exhibit::{Member, OverlayKind, Stack},
+        readout::{CurvePoint, ReadFault, Reading as Read},
     },
     measure::{self, Probe},
 };
@@ -71,6 +71,17 @@ impl Desk<'_> {
                 continue;
             }
             let reading = overlay.reading(&mut self.rasters, place).map_err(unread)?;
+            // A category that is switched off is not there.
+            let alone = self.scene.categories.get(&index);
+            let reading = reading.filter(|reading| match (reading, &overlay.kind, alone) {
+                (Read::Category(entry), OverlayKind::Categorical(entries), Some(alone)) => {
+                    let place = entries
+                        .iter()
+                        .position(|other| other.colour == entry.colour);
+                    place.is_some_and(|place| alone.contains(&place))
+                }
+                _ => true,
+            });
             let said = reading.map_or_else(|| "nothing".to_owned(), |reading| reading.words(say));
             lines.push(format!("{}: {said}", titled(&overlay.title, &overlay.id)));
         }

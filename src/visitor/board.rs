@@ -148,7 +148,10 @@ fn lines(measuring: &Measuring, pointer: &Pointer) -> Vec<String> {
             Said::Read(reading) => reading.words.clone(),
             Said::Nothing(why) => format!("nothing: {why}"),
         };
-        lines.push(format!("{}  {}, {said}", index + 1, laid.on.side.word()));
+        let state = laid.on.state.as_ref();
+        let state = state.map_or(String::new(), |state| format!(" ({state})"));
+        let side = laid.on.side.word();
+        lines.push(format!("{}  {side}{state}, {said}", index + 1));
     }
     if let Some(Said::Read(reading)) = laid.last().map(|laid| &laid.said) {
         lines.extend(reading.notes.iter().cloned());

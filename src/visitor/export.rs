@@ -2,6 +2,7 @@
 //! bar, legend and sidecar, or in numbers; and what was measured becomes a table.
 
 use std::{
+    collections::HashSet,
     env,
     ffi::OsString,
     io::{self, Write},
@@ -26,11 +27,16 @@ use crate::{
 /// Names beside a picture that belong to it.
 const BESIDE: [&str; 4] = ["png", "exr", "json", "csv"];
 
+/// The running program, on Linux.
+const ITSELF: &str = "/proc/self/exe";
+
 /// Exports on their way.
 #[derive(Resource)]
 pub struct Exports {
     /// Where they go; without it, the folder that the program was started in.
     folder: Option<PathBuf>,
+    /// Names that were given away, also those whose files are still to come.
+    given: HashSet<PathBuf>,
     // Ends of channels are not Sync; only `export` takes them, and never blocks.
     ends: Option<Mutex<(mpsc::Sender<Done>, mpsc::Receiver<Done>)>>,
 }
@@ -91,7 +97,11 @@ pub fn export(
 impl Exports {
     /// Into a folder; without one, into that which the program was started in.
     pub fn into(folder: Option<PathBuf>) -> Self {
-        Self { folder, ends: None }
+        Self {
+            folder,
+            given: HashSet::new(),
+            ends: None,
+        }
     }
 
     /// What came to an end since the last time.
@@ -123,7 +133,8 @@ impl Exports {
             folder: folder.clone(),
             error,
         })?;
-        let stem = free(&folder, &exhibit.drawing_of(&scene).id);
+        let stem = free(&folder, &exhibit.drawing_of(&scene).id, &self.given);
+        self.given.insert(folder.join(&stem));
         let out = folder.join(&stem).with_added_extension(match linear {
             true => "exr",
             false => "png",
@@ -138,6 +149,11 @@ impl Exports {
             path: PathBuf::from("recto"),
             error,
         })?;
+        // A program that was replaced while it runs is still its own process's.
+        let program = match program.exists() {
+            true => program,
+            false => PathBuf::from(ITSELF),
+        };
         let arguments = arguments(&exhibit, &link, size, hand.tier().name(), &out);
         let child = Command::new(&program)
             .args(arguments)
@@ -178,12 +194,13 @@ fn arguments(exhibit: &Exhibit, link: &str, size: UVec2, tier: &str, out: &Path)
     words.chain([out.as_os_str().to_owned()]).collect()
 }
 
-/// `ID-1`, `ID-2`, …: the first that no file of the folder is called.
-fn free(folder: &Path, id: &str) -> String {
+/// `ID-1`, `ID-2`, …: the first that no file of the folder is called, and that was not given away.
+fn free(folder: &Path, id: &str, given: &HashSet<PathBuf>) -> String {
     let stems = (1u32..).map(|number| format!("{id}-{number}"));
     let is_taken = |stem: &String| {
         let name = |extension| folder.join(stem).with_added_extension(extension);
-        BESIDE.iter().any(|extension| name(extension).exists())
+        given.contains(&folder.join(stem))
+            || BESIDE.iter().any(|extension| name(extension).exists())
     };
     stems
         .into_iter()
@@ -198,12 +215,17 @@ mod tests {
     #[test]
     fn no_file_is_ever_written_over() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        assert_eq!(free(folder.path(), "sheet"), "sheet-1");
+        let mut given = HashSet::new();
+        let free = |given: &HashSet<PathBuf>| free(folder.path(), "sheet", given);
+        assert_eq!(free(&given), "sheet-1");
         for name in ["sheet-1.csv", "sheet-2.png.json", "sheet-3.exr"] {
             std::fs::write(folder.path().join(name), "").expect("written");
         }
-        assert_eq!(free(folder.path(), "sheet"), "sheet-2");
+        assert_eq!(free(&given), "sheet-2");
         std::fs::write(folder.path().join("sheet-2.json"), "").expect("written");
-        assert_eq!(free(folder.path(), "sheet"), "sheet-4");
+        assert_eq!(free(&given), "sheet-4");
+        // One whose picture is still being made.
+        given.insert(folder.path().join("sheet-4"));
+        assert_eq!(free(&given), "sheet-5");
     }
 }

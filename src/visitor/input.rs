@@ -77,6 +77,8 @@ impl Devices {
                 self.pointer = Some(moved.position);
                 let before = std::mem::replace(&mut self.cursor, moved.position);
                 match self.held {
+                    // A click whose hand trembles moves nothing.
+                    Some((_, Held::Sheet)) if self.tap.is_some() => {}
                     Some((_, Held::Sheet)) => want(Intent::Drag {
                         from: self.place(before),
                         to: self.place(moved.position),
@@ -196,7 +198,7 @@ impl Devices {
                             factor: f64::from(now_apart / apart.max(1.0)),
                         });
                     }
-                    (None, None) => want(Intent::Drag {
+                    (None, None) if self.tap.is_none() => want(Intent::Drag {
                         from: self.place(from),
                         to: self.place(touch.position),
                     }),
@@ -377,10 +379,14 @@ mod tests {
     fn a_click_that_goes_nowhere_is_a_tap_and_a_drag_is_none() {
         let tap = Intent::Tap(DVec2::new(-0.5, 0.5));
         assert!(wishes(&[]).contains(&tap));
-        assert!(wishes(&[[104.0, 52.0]]).contains(&tap));
+        let trembling = wishes(&[[104.0, 52.0]]);
+        assert!(trembling.contains(&tap));
+        let is_drag = |wish: &Intent| matches!(wish, Intent::Drag { .. });
+        assert!(!trembling.iter().any(is_drag), "it moves nothing");
         for drag in [vec![[150.0, 50.0]], vec![[150.0, 50.0], [100.0, 50.0]]] {
             let wishes = wishes(&drag);
             assert!(!wishes.iter().any(|wish| matches!(wish, Intent::Tap(_))));
+            assert!(wishes.iter().any(is_drag));
         }
     }
 }

@@ -10,6 +10,9 @@ use crate::{
     readings::{Disc, PROBE_MM, Reading, Tool, sight::Seen},
 };
 
+/// Places nearer to each other are one, in pixels of the picture.
+const SAME_PX: f64 = 2.0;
+
 /// What can be laid on the sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -49,7 +52,7 @@ impl Kind {
             Self::Lines => "laid and chain lines: click on two corners of a region without holes",
             Self::Stroke => "stroke: click on paper on both sides of it",
             Self::Probe => "colour: click on a place",
-            Self::Difference => "difference of colours: click on two places",
+            Self::Difference => "difference of colours: click on two places of one sheet",
         }
     }
 
@@ -99,11 +102,13 @@ impl Kind {
     }
 }
 
-/// A side of a drawing, by its id.
+/// A side of a drawing in a state, by their ids.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OnSide {
     pub drawing: String,
     pub side: SideName,
+    /// `None` for the sheet as its sides describe it.
+    pub state: Option<String>,
 }
 
 /// What came of a tool.
@@ -185,11 +190,13 @@ impl Measuring {
         let next = wrapped(place.map_or(0, |place| place + 1), by, Kind::ALL.len() + 1);
         self.kind = next.checked_sub(1).map(|index| Kind::ALL[index]);
         self.laying = None;
+        self.ended = false;
     }
 
     /// Puts the tool in the hand away; whether there was one.
     pub fn put_away(&mut self) -> bool {
         self.laying = None;
+        self.ended = false;
         self.kind.take().is_some()
     }
 
@@ -202,18 +209,14 @@ impl Measuring {
         };
     }
 
-    /// Lays the tool down at a place that is seen on a side of the drawing called `drawing`. Says
-    /// which one lies there when it is complete.
-    pub fn lay(&mut self, drawing: &str, seen: &Seen) -> Option<&Laid> {
+    /// Lays the tool down at a place that is seen on a side. Says which one lies there when it is
+    /// complete.
+    pub fn lay(&mut self, on: OnSide, seen: &Seen) -> Option<&Laid> {
         let kind = self.kind?;
         if std::mem::take(&mut self.ended) {
             return None;
         }
-        let on = OnSide {
-            drawing: drawing.to_owned(),
-            side: seen.side,
-        };
-        // A tool lies on one side of one sheet.
+        // A tool lies on one side of one sheet in one state.
         let laying = self.laying.take().filter(|laying| laying.on == on);
         let mut laying = laying.unwrap_or(Laying {
             on,
@@ -221,6 +224,12 @@ impl Measuring {
             screen_mm: 0.0,
             sheet: seen.sheet,
         });
+        // One place twice is a double click that came too slowly.
+        let is_same = |last: &DVec2| last.distance(seen.mm) <= SAME_PX * seen.pixel_mm;
+        if laying.places.last().is_some_and(is_same) {
+            self.laying = Some(laying);
+            return None;
+        }
         laying.places.push(seen.mm);
         laying.screen_mm = laying.screen_mm.max(seen.pixel_mm);
         let complete = !kind.is_open() && laying.places.len() == kind.places();
@@ -236,6 +245,19 @@ impl Measuring {
         }
         self.ended = true;
         self.end()
+    }
+
+    /// Something is dragged: the click that comes next is one of its own.
+    pub fn forget_double_click(&mut self) {
+        self.ended = false;
+    }
+
+    /// The files were read anew: what was read of the old ones is read again. Says what.
+    pub fn reread(&mut self) -> &[Laid] {
+        for laid in &mut self.laid {
+            laid.said = Said::Waiting;
+        }
+        &self.laid
     }
 
     /// Ends what is being laid, if it has places enough.
@@ -316,6 +338,18 @@ mod tests {
         }
     }
 
+    fn on(side: SideName) -> OnSide {
+        OnSide {
+            drawing: "sheet".to_owned(),
+            side,
+            state: None,
+        }
+    }
+
+    fn lay(measuring: &mut Measuring, x: f64, y: f64, side: SideName) -> Option<Laid> {
+        measuring.lay(on(side), &seen(x, y, side)).cloned()
+    }
+
     fn with(kind: Kind) -> Measuring {
         let mut measuring = Measuring::default();
         while measuring.kind() != Some(kind) {
@@ -341,31 +375,17 @@ mod tests {
     #[test]
     fn a_ruler_lies_on_two_places_of_one_side() {
         let mut measuring = with(Kind::Ruler);
-        assert!(
-            measuring
-                .lay("sheet", &seen(10.0, 20.0, SideName::Recto))
-                .is_none()
-        );
+        assert!(lay(&mut measuring, 10.0, 20.0, SideName::Recto).is_none());
         // The sheet was turned over meanwhile.
-        assert!(
-            measuring
-                .lay("sheet", &seen(50.0, 20.0, SideName::Verso))
-                .is_none()
-        );
-        let laid = measuring
-            .lay("sheet", &seen(80.0, 60.0, SideName::Verso))
-            .unwrap();
+        assert!(lay(&mut measuring, 50.0, 20.0, SideName::Verso).is_none());
+        let laid = lay(&mut measuring, 80.0, 60.0, SideName::Verso).unwrap();
         let ends = [DVec2::new(50.0, 20.0), DVec2::new(80.0, 60.0)];
         assert_eq!(laid.tool, Tool::Ruler(ends));
         assert_eq!(laid.on.side, SideName::Verso);
         // Where the sheet is seen least exactly.
         assert!((laid.screen_mm - 0.18).abs() < 1e-12);
         // Another one begins anew.
-        assert!(
-            measuring
-                .lay("sheet", &seen(1.0, 2.0, SideName::Verso))
-                .is_none()
-        );
+        assert!(lay(&mut measuring, 1.0, 2.0, SideName::Verso).is_none());
         assert_eq!(measuring.laid().len(), 1);
     }
 
@@ -373,33 +393,53 @@ mod tests {
     fn a_path_ends_when_somebody_says_so() {
         let mut measuring = with(Kind::Area);
         for (x, y) in [(10.0, 10.0), (30.0, 10.0)] {
-            measuring.lay("sheet", &seen(x, y, SideName::Recto));
+            lay(&mut measuring, x, y, SideName::Recto);
             assert!(measuring.end().is_none());
         }
-        measuring.lay("sheet", &seen(30.0, 40.0, SideName::Recto));
+        lay(&mut measuring, 30.0, 40.0, SideName::Recto);
         // The second press of a double click ends it, and its release is no new place.
         assert!(measuring.end_by_click().is_some());
-        assert!(
-            measuring
-                .lay("sheet", &seen(30.0, 40.0, SideName::Recto))
-                .is_none()
-        );
+        assert!(lay(&mut measuring, 30.0, 40.0, SideName::Recto).is_none());
         assert!(measuring.laying().is_none());
-        measuring.lay("sheet", &seen(5.0, 5.0, SideName::Recto));
+        lay(&mut measuring, 5.0, 5.0, SideName::Recto);
         assert_eq!(measuring.laying().unwrap().places.len(), 1);
         // A double click that ends nothing swallows no click.
         let mut ruler = with(Kind::Ruler);
         assert!(ruler.end_by_click().is_none());
-        ruler.lay("sheet", &seen(5.0, 5.0, SideName::Recto));
+        lay(&mut ruler, 5.0, 5.0, SideName::Recto);
         assert!(ruler.laying().is_some());
+    }
+
+    #[test]
+    fn two_colours_are_of_one_state_and_one_place_is_no_second_one() {
+        let mut measuring = with(Kind::Difference);
+        lay(&mut measuring, 10.0, 10.0, SideName::Recto);
+        let before = OnSide {
+            state: Some("before".to_owned()),
+            ..on(SideName::Recto)
+        };
+        let other = measuring.lay(before.clone(), &seen(50.0, 10.0, SideName::Recto));
+        assert!(other.is_none(), "it begins anew on the other member");
+        let other = measuring
+            .lay(before, &seen(80.0, 10.0, SideName::Recto))
+            .unwrap();
+        assert_eq!(
+            other.places,
+            [DVec2::new(50.0, 10.0), DVec2::new(80.0, 10.0)]
+        );
+        let mut area = with(Kind::Area);
+        for x in [10.0, 30.0, 30.0, 30.1] {
+            lay(&mut area, x, 10.0, SideName::Recto);
+        }
+        assert_eq!(area.laying().unwrap().places.len(), 2);
     }
 
     #[test]
     fn places_and_tools_are_taken_back_one_by_one() {
         let mut measuring = with(Kind::Ruler);
-        measuring.lay("sheet", &seen(1.0, 1.0, SideName::Recto));
-        measuring.lay("sheet", &seen(2.0, 2.0, SideName::Recto));
-        measuring.lay("sheet", &seen(3.0, 3.0, SideName::Recto));
+        lay(&mut measuring, 1.0, 1.0, SideName::Recto);
+        lay(&mut measuring, 2.0, 2.0, SideName::Recto);
+        lay(&mut measuring, 3.0, 3.0, SideName::Recto);
         measuring.take_back();
         assert!(measuring.laying().is_none() && measuring.laid().len() == 1);
         let number = measuring.laid()[0].number;
@@ -408,10 +448,8 @@ mod tests {
         measuring.hear(number, Said::Nothing(String::new()));
         measuring.take_back();
         // Numbers are never given twice: an answer that comes late is nobody's.
-        measuring.lay("sheet", &seen(1.0, 1.0, SideName::Recto));
-        let next = measuring
-            .lay("sheet", &seen(2.0, 2.0, SideName::Recto))
-            .unwrap();
+        lay(&mut measuring, 1.0, 1.0, SideName::Recto);
+        let next = lay(&mut measuring, 2.0, 2.0, SideName::Recto).unwrap();
         assert!(next.number > number);
     }
 }

@@ -1,6 +1,8 @@
 //! Tools and the pointer on the sheet that is shown: from wishes to what is asked of the maps, and
 //! from what they say to marks over the picture.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 use glam::DVec2;
 
@@ -10,12 +12,12 @@ use super::{
     input::Devices,
     intent::Intent,
     marks::{self, InView, Ink, Mark, Marks, Shape},
-    measuring::{self, Kind, Laid, Measuring},
+    measuring::{self, Kind, Laid, Measuring, OnSide, Said},
     reader::{Answer, Errand, Reader},
 };
 use crate::{
     manifest::{
-        exhibit::{Scene, SideName},
+        exhibit::{Exhibit, Scene, SideName},
         frames::other_side,
     },
     readings::{
@@ -32,8 +34,8 @@ pub struct Pointer {
     wanted: bool,
     /// Where it is on the sheet.
     seen: Option<Seen>,
-    /// What was asked for last.
-    asked: Option<(Scene, DVec2)>,
+    /// What was asked for last, of which version.
+    asked: Option<(Arc<Exhibit>, Scene, DVec2)>,
     /// And what is there.
     under: Option<Result<Under, String>>,
 }
@@ -86,11 +88,12 @@ impl View {
 }
 
 /// Whether a wish is the tool's that is in the hand, and nobody else's.
-pub fn is_for_tool(intent: Intent) -> bool {
-    matches!(
-        intent,
-        Intent::Tap(_) | Intent::TrueSize { .. } | Intent::GoOn
-    )
+pub fn is_for_tool(measuring: &Measuring, intent: Intent) -> bool {
+    match intent {
+        Intent::Tap(_) | Intent::TrueSize { .. } => measuring.kind().is_some(),
+        Intent::GoOn => measuring.laying().is_some(),
+        _ => false,
+    }
 }
 
 /// Follows wishes that are about tools and the pointer, once what is shown is what the hand holds.
@@ -100,23 +103,34 @@ pub fn follow(
     windows: Query<&Window>,
     (mut measuring, mut pointer, mut texts): (ResMut<Measuring>, ResMut<Pointer>, ResMut<Texts>),
     (mut reader, waker): (ResMut<Reader>, Res<Waker>),
+    mut version: Local<Option<Arc<Exhibit>>>,
 ) {
-    let mut ask = |laid: &Laid, view: &View| {
-        // A tool that was begun on a sheet that is gone is read on the first.
-        let sheet = laid.sheet.min(view.sheets.len().saturating_sub(1));
+    let mut ask = |laid: &Laid| -> Option<()> {
         let errand = Errand::Tool {
             number: laid.number,
             tool: laid.tool.clone(),
             screen_mm: laid.screen_mm,
         };
-        let scene = view.scene(&shown, sheet, laid.on.side);
+        let scene = read_on(hand.exhibit(), &shown.scene, &laid.on)?;
         reader.ask(hand.exhibit().clone(), scene, errand, &waker);
+        Some(())
     };
+    let is_same = |version: &Arc<Exhibit>| Arc::ptr_eq(version, hand.exhibit());
+    if !version.as_ref().is_some_and(is_same) {
+        // What was read of the files before may not be so any more.
+        if version.is_some() && !measuring.laid().is_empty() {
+            let laid = measuring.reread().to_vec();
+            for laid in laid.iter().filter(|laid| ask(laid).is_none()) {
+                let gone = "its drawing or its state is gone".to_owned();
+                measuring.hear(laid.number, Said::Nothing(gone));
+            }
+        }
+        *version = Some(hand.exhibit().clone());
+    }
     for intent in intents.read() {
         let Ok(window) = windows.single() else {
             return;
         };
-        let has_tool = measuring.kind().is_some();
         match *intent {
             Intent::StepTool(by) => {
                 measuring.step(by);
@@ -129,26 +143,60 @@ pub fn follow(
                 pointer.asked = None;
                 pointer.under = None;
             }
-            intent if has_tool && is_for_tool(intent) => {
+            Intent::Drag { .. } => measuring.bypass_change_detection().forget_double_click(),
+            intent if is_for_tool(&measuring, intent) => {
                 let view = View::new(&shown, &shape, window.size());
                 let laid = match intent {
                     // A sheet that is being turned is not measured.
                     Intent::Tap(at) if !hand.is_moving() => {
-                        let drawing = shown.exhibit.drawing_of(&shown.scene);
                         let seen = view.seen(&shown, marks::px(at, window.size()));
-                        seen.and_then(|seen| measuring.lay(&drawing.id, &seen))
+                        seen.and_then(|seen| {
+                            let scene = &view.sheets[seen.sheet].scene;
+                            measuring.lay(on(&shown.exhibit, scene, seen.side), &seen)
+                        })
                     }
                     Intent::TrueSize { .. } => measuring.end_by_click(),
                     Intent::GoOn => measuring.end(),
                     _ => None,
                 };
-                if let Some(laid) = laid.filter(|_| !view.sheets.is_empty()) {
-                    ask(laid, &view);
+                if let Some(laid) = laid {
+                    ask(laid);
                 }
             }
             _ => {}
         }
     }
+}
+
+/// The side that a scene without a comparison shows, or the other one.
+fn on(exhibit: &Exhibit, scene: &Scene, side: SideName) -> OnSide {
+    let drawing = exhibit.drawing_of(scene);
+    OnSide {
+        drawing: drawing.id.clone(),
+        side,
+        state: scene.state.map(|state| drawing.states[state].id.clone()),
+    }
+}
+
+/// The scene that shows a side, otherwise as `like`; `None` where the exhibit has it no more.
+fn read_on(exhibit: &Exhibit, like: &Scene, on: &OnSide) -> Option<Scene> {
+    let drawing = exhibit.drawings.iter().position(|d| d.id == on.drawing)?;
+    let state = match &on.state {
+        Some(id) => Some(exhibit.drawings[drawing].state(id)?.0),
+        None => None,
+    };
+    let mut scene = Scene {
+        drawing,
+        side: on.side,
+        state,
+        compare: None,
+        ..like.clone()
+    };
+    if drawing != like.drawing {
+        scene.overlays.clear();
+        scene.categories.clear();
+    }
+    Some(scene)
 }
 
 /// Takes in what was read.
@@ -160,7 +208,7 @@ pub fn hear(
         match answer {
             Answer::Tool(number, said) => measuring.hear(number, said),
             Answer::Under(place, under) => {
-                let asked = pointer.asked.as_ref().map(|(_, place)| *place);
+                let asked = pointer.asked.as_ref().map(|(.., place)| *place);
                 if asked == Some(place) {
                     pointer.under = Some(under);
                 }
@@ -222,16 +270,18 @@ pub fn point(
     };
     let scene = view.scene(&shown, seen.sheet, seen.side);
     // Where eye and lamps are makes no difference to a map.
-    let asked = pointer.asked.as_ref().is_some_and(|(was, place)| {
+    let asked = pointer.asked.as_ref().is_some_and(|(version, was, place)| {
         let same = |a: &Scene, b: &Scene| {
             (a.drawing, a.side, a.state) == (b.drawing, b.side, b.state)
                 && a.overlays == b.overlays
+                && a.categories == b.categories
                 && a.compare.as_ref().map(|c| &c.of) == b.compare.as_ref().map(|c| &c.of)
         };
-        *place == seen.mm && same(was, &scene)
+        Arc::ptr_eq(version, hand.exhibit()) && *place == seen.mm && same(was, &scene)
     });
     if !asked {
-        pointer.bypass_change_detection().asked = Some((scene.clone(), seen.mm));
+        let asked = (hand.exhibit().clone(), scene.clone(), seen.mm);
+        pointer.bypass_change_detection().asked = Some(asked);
         let errand = Errand::Under(seen.mm);
         reader.ask(hand.exhibit().clone(), scene, errand, &waker);
     }
@@ -327,19 +377,13 @@ fn outline(kind: Kind, places: &[DVec2]) -> (Vec<DVec2>, bool) {
 mod tests {
     use std::{
         fs,
-        sync::Arc,
         time::{Duration, Instant},
     };
 
     use bevy::window::WindowEvent;
 
     use super::*;
-    use crate::{
-        manifest::Exhibit,
-        maps::encode,
-        optics::tier::Tier,
-        visitor::{hand::Picture, measuring::Said},
-    };
+    use crate::{maps::encode, optics::tier::Tier, visitor::hand::Picture};
 
     const SIZE: Vec2 = Vec2::new(400.0, 200.0);
     /// How long a small picture may take to be read on a slow machine.
@@ -385,7 +429,7 @@ mod tests {
             .init_resource::<Reader>()
             .init_resource::<Marks>()
             .add_message::<Intent>()
-            .add_systems(Update, (follow, show, hear, point, lay).chain());
+            .add_systems(Update, (show, follow, hear, point, lay).chain());
         (folder, app)
     }
 

@@ -331,7 +331,7 @@ fn steer(
     hand.advance(time.delta_secs_f64(), arranged.is_settled());
     let mut moving = hand.is_moving();
     for intent in intents.read() {
-        if measuring.kind().is_some() && tools::is_for_tool(*intent) {
+        if tools::is_for_tool(&measuring, *intent) {
             continue;
         }
         hand.apply(*intent);
