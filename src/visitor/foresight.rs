@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use super::hand::{Hand, Serving};
 use crate::{
     cost,
-    manifest::exhibit::{Exhibit, Scene},
+    manifest::exhibit::{Comparison, Exhibit, Scene},
     optics::tier::Tier,
     stage::{Arranged, Shown, Waker},
     tradeoff::{
@@ -104,11 +104,12 @@ impl Foresight {
     }
 }
 
-/// What is predicted of a scene: its own sheet. Members that take turns, and a curtain that is drawn,
-/// ask for nothing new.
+/// What is predicted of a scene, as `recto check` does: of a comparison all members. Where a curtain is,
+/// and whose turn, asks for nothing new.
 fn predicted(scene: &Scene) -> Scene {
+    let compare = scene.compare.as_ref();
     Scene {
-        compare: None,
+        compare: compare.map(|comparison| Comparison::new(comparison.mode, comparison.of.clone())),
         ..scene.clone()
     }
 }

@@ -637,3 +637,33 @@ fn sheets_beside_each_other_follow_the_finger_that_holds_one() {
         );
     }
 }
+
+#[test]
+fn the_side_that_is_dragged_follows_the_finger_under_a_curtain_too() {
+    let (_folder, mut hand) = hand("whole");
+    hand.apply(Intent::StepCompare(1));
+    let mode = hand.shown().scene.compare.as_ref().map(|c| c.mode);
+    assert_eq!(mode, Some(CompareMode::Curtain));
+    hand.apply(Intent::Zoom {
+        at: DVec2::ZERO,
+        factor: 4.0,
+    });
+    settle(&mut hand);
+    let width = hand.shown().scene.camera.width_mm;
+    // The curtain's edge is in the middle, the recto on its left.
+    for (from, sign) in [(-0.5, -1.0), (0.5, 1.0)] {
+        let before = hand.shown().scene.camera.centre_mm;
+        hand.apply(Intent::Take);
+        hand.apply(Intent::Drag {
+            from: DVec2::new(from, 0.0),
+            to: DVec2::new(from + 0.1, 0.0),
+        });
+        let moved = hand.shown().scene.camera.centre_mm.x - before.x;
+        hand.apply(Intent::Release);
+        settle(&mut hand);
+        assert!(
+            (moved - sign * 0.05 * width).abs() < NEAR_MM,
+            "{moved} {width}"
+        );
+    }
+}

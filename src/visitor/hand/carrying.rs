@@ -8,7 +8,7 @@ use glam::{DQuat, DVec2, DVec3};
 use super::{ARRIVED, FARTHEST_TURN_DEG, Grip, Hand, Speed};
 use crate::manifest::{
     comparison::Part,
-    exhibit::{Camera, Comparison, FlipAxis, Member, SideName},
+    exhibit::{Camera, Comparison, FlipAxis, Scene, SideName},
     eye::Eye,
     frames::other_side,
 };
@@ -22,8 +22,9 @@ const NARROWEST_MM: f64 = 2.0;
 /// A picture narrower than the whole sheet by this factor is zoomed in.
 const ZOOMED: f64 = 0.85;
 
-/// The part of the picture in which a hand holds a sheet.
-struct Cell {
+/// How a hand holds one of the sheets that share a picture.
+struct Hold {
+    /// What of the picture that sheet has.
     part: Part,
     /// Signs of right and up on the table: a sheet that shows its other side goes the other way.
     mirror: DVec2,
@@ -36,43 +37,48 @@ impl Hand {
         self.view.camera.fitted(size, self.aspect())
     }
 
-    /// Width over height of the sheet's own picture: of sheets beside each other, of a cell.
+    /// The sheet's own picture in that which is shown: of sheets beside each other, a cell.
+    fn own(&self) -> Part {
+        let cells = self.view.compare.as_ref().map(Comparison::cells);
+        let first = cells.and_then(|cells| cells.first().copied());
+        first.unwrap_or(Part::WHOLE)
+    }
+
+    /// Its width over its height.
     fn aspect(&self) -> f64 {
-        self.cell(DVec2::ZERO).part.aspect(self.picture.aspect)
+        self.own().aspect(self.picture.aspect)
     }
 
     /// Width in mm of the sheet that is as wide as its own picture on the display.
     pub(super) fn true_width_mm(&self) -> f64 {
-        self.picture.width_mm * self.cell(DVec2::ZERO).part.scale.x
+        self.picture.width_mm * self.own().scale.x
     }
 
-    /// Of sheets beside each other, the one at a place of the picture.
-    fn cell(&self, at: DVec2) -> Cell {
-        let whole = Cell {
-            part: Part::WHOLE,
+    /// The sheet at a place of the picture, where several share it.
+    fn hold(&self, at: DVec2) -> Hold {
+        let first = Hold {
+            part: self.own(),
             mirror: DVec2::ONE,
         };
-        let Some(comparison) = &self.view.compare else {
-            return whole;
+        let Some(comparison) = self.view.compare.as_ref().filter(|c| !c.mode.combines()) else {
+            return first;
         };
-        let cells = comparison.cells();
-        let found = cells.iter().zip(&comparison.of);
-        let mut found = found.filter(|(part, _)| part.shows(at, self.picture.aspect));
+        let scene = Scene {
+            side: self.view.side,
+            compare: Some(comparison.clone()),
+            ..self.written().clone()
+        };
+        let parts = self.exhibit.parts(&scene, self.picture.aspect).into_iter();
+        let mut held = parts.filter(|(_, part)| part.shows(at, self.picture.aspect));
         // Beyond the picture's edge a drag goes on as it began.
-        let Some((part, member)) = found.next().or(cells.first().zip(comparison.of.first())) else {
-            return whole;
-        };
-        let mirror = match member {
-            Member::Side(side) if *side != self.view.side => match self.drawing().flip {
+        held.next().map_or(first, |(member, part)| Hold {
+            part,
+            mirror: match self.drawing().flip {
+                _ if member.side == self.view.side => DVec2::ONE,
                 FlipAxis::Vertical => DVec2::new(-1.0, 1.0),
                 FlipAxis::Horizontal => DVec2::new(1.0, -1.0),
             },
-            _ => DVec2::ONE,
-        };
-        Cell {
-            part: *part,
-            mirror,
-        }
+        })
     }
 
     /// The widest picture in mm: the whole sheet, or more if the scene says so.
@@ -129,19 +135,19 @@ impl Hand {
     /// Brings what lies at `from` to `to`.
     pub(super) fn shift(&mut self, from: DVec2, to: DVec2) {
         // The sheet that was taken is moved, and the others with it.
-        let cell = self.cell(from);
-        let places = (self.table_point(from, &cell), self.table_point(to, &cell));
+        let hold = self.hold(from);
+        let places = (self.table_point(from, &hold), self.table_point(to, &hold));
         if let (Some(start), Some(end)) = places {
-            let by = (start - end) * cell.mirror;
+            let by = (start - end) * hold.mirror;
             self.move_centre(by);
             self.speed.push(by);
         }
     }
 
-    fn table_point(&self, at: DVec2, cell: &Cell) -> Option<DVec2> {
+    fn table_point(&self, at: DVec2, hold: &Hold) -> Option<DVec2> {
         let eye = Eye::new(&self.camera(), self.drawing().size_mm);
-        let own = (at - cell.part.shift) / cell.part.scale;
-        let point = eye.table_point(own, cell.part.aspect(self.picture.aspect))?;
+        let own = (at - hold.part.shift) / hold.part.scale;
+        let point = eye.table_point(own, hold.part.aspect(self.picture.aspect))?;
         Some(point.truncate())
     }
 
@@ -176,15 +182,15 @@ impl Hand {
     }
 
     pub(super) fn set_width(&mut self, width_mm: f64, at: DVec2) {
-        let cell = self.cell(at);
-        let before = self.table_point(at, &cell);
+        let hold = self.hold(at);
+        let before = self.table_point(at, &hold);
         let camera = Camera {
             width_mm,
             ..self.camera()
         };
         self.set_camera(camera);
-        if let (Some(before), Some(after)) = (before, self.table_point(at, &cell)) {
-            self.move_centre((before - after) * cell.mirror);
+        if let (Some(before), Some(after)) = (before, self.table_point(at, &hold)) {
+            self.move_centre((before - after) * hold.mirror);
         }
     }
 
