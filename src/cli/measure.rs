@@ -518,7 +518,7 @@ fn say(
     plot_file: Option<&std::path::Path>,
 ) -> Result<(), Failure> {
     if let Some(path) = csv {
-        let text = table::csv(readings);
+        let text = table::csv((1..).zip(readings));
         encode::write_whole(path, |file| file.write_all(text.as_bytes()))?;
     }
     let profile = readings.iter().find(|reading| !reading.samples.is_empty());

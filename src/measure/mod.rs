@@ -43,6 +43,14 @@ pub use profile::{Profile, Relief, profile};
 pub use raster::Raster;
 pub use stroke::{Section, StrokeWidth, stroke_width};
 
+/// How exactly that is known, where it is no matter of exactness that they are one place.
+fn known_to(sigma_mm: f64) -> String {
+    match sigma_mm > 0.0 {
+        true => format!(" and known to {sigma_mm:.3} mm"),
+        false => String::new(),
+    }
+}
+
 /// Why something cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum MeasureError {
@@ -66,15 +74,16 @@ pub enum MeasureError {
     },
     /// Two places that must differ are nearer to each other than they can be told apart.
     #[error(
-        "places {} and {} are {distance_mm:.3} mm apart and known to {sigma_mm:.3} mm; set them \
-         further apart",
+        "places {} and {} are {distance_mm:.3} mm apart{}; set them further apart",
         first + 1,
-        second + 1
+        second + 1,
+        known_to(*sigma_mm)
     )]
     OnePlace {
         first: usize,
         second: usize,
         distance_mm: f64,
+        /// 0 where they are one place however well it is known.
         sigma_mm: f64,
     },
     /// An outline crosses or touches itself.

@@ -206,19 +206,48 @@ mod tests {
     use super::*;
     use crate::optics::medium::MediumId;
 
-    /// Even light is what beams from everywhere give together. The surface's own mirroring of
-    /// them is coarser than this sum: matte paper has none to speak of.
-    #[test]
-    fn the_rooms_light_is_that_of_beams_from_everywhere() {
-        const STEPS: u32 = 48;
+    /// Bare laid paper of this albedo.
+    fn paper(albedo: DVec3) -> Spot {
         let laid = "laid".parse::<MediumId>().expect("laid paper").medium();
-        let albedo = DVec3::new(0.8, 0.5, 0.2);
         let behind = Behind {
             bare: albedo,
             other: albedo,
             other_bare: albedo,
             clear: 1.0,
         };
+        Spot::flat(Specimen::new(laid, albedo), behind)
+    }
+
+    #[test]
+    fn a_facet_is_lit_by_what_it_faces_above_the_sheet() {
+        let lit = |normal: DVec3, l: DVec3, visible: f64| {
+            let incidence = Incidence {
+                l: l.normalize(),
+                e: DVec3::ONE,
+            };
+            let light = Illumination {
+                beams: vec![Beam { incidence, visible }],
+                ..Illumination::default()
+            };
+            let spot = Spot {
+                normal: normal.normalize(),
+                ..paper(DVec3::splat(0.7))
+            };
+            spot.radiance(Tier::Gallery, DVec3::Z, &light).max_element()
+        };
+        let leaning = DVec3::new(1.0, 0.0, 1.0);
+        assert!(lit(leaning, DVec3::new(1.0, 0.0, 0.5), 1.0) > 0.0);
+        // Turned away from a lamp above the sheet; towards one below it; in the shade.
+        assert_eq!(lit(leaning, DVec3::new(-1.0, 0.0, 0.5), 1.0), 0.0);
+        assert_eq!(lit(leaning, DVec3::new(1.0, 0.0, -0.5), 1.0), 0.0);
+        assert_eq!(lit(leaning, DVec3::new(1.0, 0.0, 0.5), 0.0), 0.0);
+    }
+
+    /// Even light is what beams from everywhere give together. The surface's own mirroring of
+    /// them is coarser than this sum: matte paper has none to speak of.
+    #[test]
+    fn the_rooms_light_is_that_of_beams_from_everywhere() {
+        const STEPS: u32 = 48;
         let mut beams = Vec::new();
         for i in 0..STEPS {
             // Of equal irradiance: dμ² is even.
@@ -247,7 +276,7 @@ mod tests {
             (Tier::Gallery, 0.02),
             (Tier::Study, 0.02),
         ] {
-            let spot = Spot::flat(Specimen::new(laid, albedo), behind);
+            let spot = paper(DVec3::new(0.8, 0.5, 0.2));
             for tilt in [0.0_f64, 0.7] {
                 let v = DVec3::new(tilt.sin(), 0.0, tilt.cos());
                 let [even, sum] = [&ambient, &beams].map(|light| spot.radiance(tier, v, light));

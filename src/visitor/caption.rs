@@ -48,14 +48,17 @@ pub const KEYS: [(&str, &str); 29] = [
         "next hotspot, back, to its scene",
     ),
     ("M, Shift + M", "next measuring tool, back: click to lay it"),
-    ("Backspace", "take back a place, or the last measurement"),
+    (
+        "Enter, Backspace",
+        "end a path, take back a place or a measurement",
+    ),
     ("V", "what lies under the pointer"),
     ("W, Ctrl + S", "save the view as a scene"),
     ("K", "print a link to the view"),
     ("E, Shift + E", "export a figure, or its light as EXR"),
     ("T, Shift + T", "next tier of accuracy, back"),
     ("C", "caption"),
-    ("F11, Esc", "full screen, close or quit"),
+    ("F11, Esc", "full screen, put away, close or quit"),
 ];
 
 /// Which texts are wanted.

@@ -174,12 +174,20 @@ impl Measuring {
         &self.laid
     }
 
-    /// What was read, in the same order.
-    pub fn readings(&self) -> impl Iterator<Item = &Reading> {
-        self.laid.iter().filter_map(|laid| match &laid.said {
-            Said::Read(reading) => Some(reading),
-            Said::Waiting | Said::Nothing(_) => None,
-        })
+    /// What was read, with its place among all that lies there, from 1.
+    pub fn readings(&self) -> impl Iterator<Item = (usize, &Reading)> {
+        (1..)
+            .zip(&self.laid)
+            .filter_map(|(number, laid)| match &laid.said {
+                Said::Read(reading) => Some((number, reading)),
+                Said::Waiting | Said::Nothing(_) => None,
+            })
+    }
+
+    /// Whether nothing is being measured, nor waited for.
+    pub fn is_idle(&self) -> bool {
+        let waits = |laid: &Laid| laid.said == Said::Waiting;
+        self.kind.is_none() && !self.laid.iter().any(waits)
     }
 
     /// Takes the next tool (1) or the one before (−1), and none between the last and the first.

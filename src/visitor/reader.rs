@@ -68,6 +68,11 @@ impl Reader {
         });
     }
 
+    /// Lets go of all maps that were decoded, and of what is still being read.
+    pub fn rest(&mut self) {
+        self.ends = None;
+    }
+
     /// What was read since the last time.
     pub fn answers(&mut self) -> Vec<Answer> {
         let ends = self.ends.as_mut().map(Mutex::get_mut);

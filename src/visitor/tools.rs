@@ -166,6 +166,9 @@ pub fn follow(
             _ => {}
         }
     }
+    if measuring.is_idle() && !pointer.wanted {
+        reader.bypass_change_detection().rest();
+    }
 }
 
 /// The side that a scene without a comparison shows, or the other one.
