@@ -62,8 +62,8 @@ enable clip_distances;
 // Largest value a half-float target holds.
 const RADIANCE_MAX: f32 = 65504.0;
 
-// Of half the picture.
-const CLIP_MARGIN: f32 = 0.01;
+// Of half the picture, against seams: well above a rasteriser's step, well below a pixel.
+const CLIP_MARGIN: f32 = 2e-5;
 
 // Texture coordinates of a map: rows applied to (x, y, 1) of the side frame.
 struct MapPlace {
@@ -244,8 +244,7 @@ struct Varyings {
     @location(5) seen: vec3<f32>,
 #endif
 #ifdef CLIPS
-    // Distances to the lines of the part: what lies well beyond one of them is not rasterised. The
-    // edge itself is the fragment's, as rasterisers round places.
+    // Distances to the lines of the part: what lies beyond one of them is not rasterised.
     @builtin(clip_distances) within: array<f32, 4>,
 #endif
 }
@@ -271,7 +270,7 @@ fn vertex(in: Vertex) -> Varyings {
 #endif
 #ifdef CLIPS
     for (var k = 0; k < 4; k++) {
-        out.within[k] = dot(paper.cut_lines[k].xyz, out.seen) + CLIP_MARGIN * out.seen.z;
+        out.within[k] = dot(paper.cut_lines[k].xyz, out.clip.xyw) + CLIP_MARGIN * out.clip.w;
     }
 #endif
     return out;

@@ -88,6 +88,8 @@ pub struct PaperKey {
     albedo_map: bool,
     display: bool,
     clips: bool,
+    /// The part has a circle, which no line clips.
+    round: bool,
 }
 
 impl PaperMaterial {
@@ -129,6 +131,7 @@ impl AsBindGroup for PaperMaterial {
             albedo_map: self.maps.albedo.is_some(),
             display: self.display,
             clips: self.clips,
+            round: self.paper.cut_circle.w != 0.0,
         }
     }
 
@@ -245,9 +248,13 @@ impl Material for PaperMaterial {
             albedo_map,
             display,
             clips,
+            round,
         } = key.bind_group_data;
+        let clips = clips && terms.cut;
         let defs: Vec<ShaderDefVal> = definitions(&terms, albedo_map, display)
             .into_iter()
+            // What lines clip needs no fragment that drops it.
+            .filter(|name| *name != "CUT" || !clips || round)
             .map(Into::into)
             .chain([ShaderDefVal::UInt(SORTS.into(), terms.sorts)])
             .collect();
@@ -261,7 +268,7 @@ impl Material for PaperMaterial {
         }
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
         descriptor.vertex.shader_defs.extend(defs.iter().cloned());
-        if terms.cut && clips {
+        if clips {
             descriptor.vertex.shader_defs.push(CLIPS.into());
         }
         if let Some(fragment) = &mut descriptor.fragment {

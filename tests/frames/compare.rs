@@ -125,18 +125,63 @@ fn a_curtain_is_its_members_bit_by_bit() {
     }
 }
 
+/// The rasteriser rounds where an edge lies to a share of a pixel, so that a pixel whose middle it passes
+/// may be either member's, and must not be the table's.
 #[test]
-fn a_window_s_clipped_curtain_is_that_of_a_file_as_far_as_is_seen() {
+fn a_window_s_clipped_parts_are_those_of_a_file_as_far_as_is_seen() {
     let mut compared = Compared::new(CompareMode::Curtain);
-    compared.comparison().angle.0 = 35.0;
-    let exact = compared.picture();
+    let alone = compared.alone(SIZE);
+    let clip = |compared: &mut Compared| {
+        let world = compared.room.world();
+        world.resource_mut::<Arranged>().clip(true);
+    };
     compared.room = room::darkroom(1);
-    let world = compared.room.world();
-    world.resource_mut::<Arranged>().clip(true);
-    let clipped = compared.picture();
-    assert!(room::largest_difference(&clipped, &exact) < STEP);
-    compared.comparison().at = 0.6;
-    assert!(room::largest_difference(&compared.picture(), &exact) > 20.0 * STEP);
+    clip(&mut compared);
+    // Pixels of another member than theirs, without those whose middle an edge passes.
+    let misplaced = |found: &Picture, parts: &[Part]| {
+        let expected = composed(&alone, parts);
+        let pairs = || found.pixels.iter().zip(&expected.pixels).enumerate();
+        let is_off = |a: &[f32; 3], b: &[f32; 3]| (0..3).any(|c| (a[c] - b[c]).abs() > STEP);
+        let off: Vec<usize> = pairs()
+            .filter_map(|(i, (a, b))| is_off(a, b).then_some(i))
+            .collect();
+        for &i in &off {
+            let is_of = |member: &Picture| !is_off(&found.pixels[i], &member.pixels[i]);
+            assert!(alone.iter().any(is_of), "pixel {i} is nobody's");
+        }
+        let is_on_edge = |i: &usize| {
+            let (x, y) = (*i as u32 % SIZE[0], *i as u32 / SIZE[0]);
+            let nudges = [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
+            let seen = nudges.map(|(right, up)| {
+                let nudge =
+                    DVec2::new(right, up) * 0.05 / DVec2::new(SIZE[0].into(), SIZE[1].into());
+                parts
+                    .iter()
+                    .position(|part| part.shows(ndc(x, y) + nudge, ASPECT))
+            });
+            seen.iter().any(|member| *member != seen[0])
+        };
+        off.iter().filter(|i| !is_on_edge(i)).count()
+    };
+    for (at, angle) in [
+        (0.37, 0.0),
+        (0.61, 35.0),
+        (0.5, 203.0),
+        (0.5, 45.0),
+        (0.25, 90.0),
+    ] {
+        compared.comparison().at = at;
+        compared.comparison().angle.0 = angle;
+        let (found, parts) = (compared.picture(), compared.parts());
+        assert_eq!(misplaced(&found, &parts), 0, "{at} {angle}");
+        compared.comparison().at = at + 0.1;
+        assert!(misplaced(&found, &compared.parts()) > 20);
+    }
+    // What lines do not clip is the fragment's.
+    compared.scene.compare = Compared::new(CompareMode::Loupe).scene.compare;
+    compared.comparison().magnify = 1.0;
+    let found = compared.picture();
+    assert_eq!(misplaced(&found, &compared.parts()), 0);
 }
 
 #[test]
