@@ -15,6 +15,7 @@
 //! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
 //! | [`visitor`] | the window: hand, lamp, keys, caption, hotspots, tools, views saved and exported |
 //! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |
+//! | [`wording`] | what the program says on the screen, in every language, and the museum's own |
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
 //! | [`figure`] | a print that can be made again: its scale bar and its sidecar |
 //! | [`lettering`] | the letters of plots and scale bars |
@@ -28,7 +29,7 @@
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
 //! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
 //! `colour`, `maps`, `measure`, `readings`, `figure`, `manifest`, `needs`, `optics`, `reference`,
-//! `tradeoff` and `sample` never name Bevy; `tests/layers.rs` holds the table of who may import whom.
+//! `tradeoff`, `sample` and `wording` never name Bevy; `tests/layers.rs` holds the table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes
 //! [`stage::Shown`], then the stage is arranged from it.
@@ -56,3 +57,4 @@ pub mod stage;
 pub mod tradeoff;
 pub mod units;
 pub mod visitor;
+pub mod wording;

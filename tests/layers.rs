@@ -8,7 +8,7 @@ use std::{
 
 /// Each module with the modules, or paths within them, that it may name. `bevy` stands for every
 /// crate of Bevy's. The crate's root and `cli` may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 22] = [
+const MAY_IMPORT: [(&str, &[&str]); 23] = [
     ("units", &[]),
     ("colour", &[]),
     ("optics", &["units", "colour"]),
@@ -118,6 +118,8 @@ const MAY_IMPORT: [(&str, &[&str]); 22] = [
             "maps::encode",
         ],
     ),
+    // A museum's wordings are told of as its manifests are.
+    ("wording", &["manifest"]),
     ("cli", &["*"]),
 ];
 

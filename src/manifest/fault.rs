@@ -77,7 +77,7 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
-/// All faults of one input, at least one, in the order of their places.
+/// All faults of one input, at least one, in the order of their files and places.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct Faults(Vec<Fault>);
@@ -125,9 +125,9 @@ impl fmt::Display for Faults {
 
 impl std::error::Error for Faults {}
 
-/// Orders faults as somebody meets them who reads the file from its top.
+/// Orders faults as somebody meets them who reads file after file from its top.
 pub(super) fn sort(faults: &mut [Fault]) {
-    faults.sort_by(|a, b| (a.place, &a.path).cmp(&(b.place, &b.path)));
+    faults.sort_by(|a, b| (&a.file, a.place, &a.path).cmp(&(&b.file, b.place, &b.path)));
 }
 
 /// The word of `words` that was probably meant by `word`, if any is near enough.

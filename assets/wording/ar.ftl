@@ -1,0 +1,157 @@
+# ما يقوله Recto للزوّار بالعربية.
+
+language-name = العربية
+
+## أدوات التحكم
+
+flip = اقلب
+lamp = المصباح
+scenes = مشاهد
+compare = مقارنة
+overlays = طبقات
+light-table = طاولة ضوئية
+measure = قياس
+home = البداية
+language = اللغة
+text-size = حجم النص
+contrast = التباين
+motion = الحركة
+help = مساعدة
+close = إغلاق
+next = التالي
+previous = السابق
+back = رجوع
+done = تم
+take-back = تراجع
+more = المزيد
+enlarge = نص أكبر
+normal-size = نص عادي
+high-contrast = تباين عالٍ
+reduced-motion = حركة أقل
+zoom-in = أقرب
+zoom-out = أبعد
+true-size = الحجم الحقيقي
+hotspots = تفاصيل
+caption = الشرح
+legend = مفتاح الألوان
+
+## الورقة
+
+recto = الوجه
+verso = الظهر
+before = قبل
+after = بعد
+
+## المصباح
+
+zenithal = من فوق
+oblique = بزاوية 45°
+raking-left = من اليسار
+raking-right = من اليمين
+raking-top = من الأعلى
+raking-bottom = من الأسفل
+intensity = السطوع
+brighter = أسطع
+dimmer = أخفت
+warmer = أدفأ
+cooler = أبرد
+lamp-elevation = الارتفاع { $elevation }°
+lamp-azimuth = الاتجاه { $azimuth }°
+colour-temperature = { $kelvin } كلفن
+lamp-overhead = المصباح فوق الورقة مباشرة
+lamp-place = المصباح على ارتفاع { $elevation }°، { $from ->
+        [right] من اليمين
+        [upper-right] من أعلى اليمين
+        [top] من الأعلى
+        [upper-left] من أعلى اليسار
+        [left] من اليسار
+        [lower-left] من أسفل اليسار
+        [bottom] من الأسفل
+       *[lower-right] من أسفل اليمين
+    } ({ $azimuth }°)
+
+## المقارنات والطبقات
+
+curtain = ستارة
+side-by-side = جنبًا إلى جنب
+blend = مزج
+loupe = عدسة
+difference = الفرق
+flicker = بالتناوب
+glass = شفافية
+opacity = الشدة
+no-overlay = بلا طبقة
+no-state = الورقة نفسها
+comparing-curtain = ستارة
+comparing-side-by-side = جنبًا إلى جنب
+comparing-blend = مزج، { $share }٪ من الثاني
+comparing-loupe = عدسة، تكبير { $times }
+comparing-difference = الفرق
+comparing-flicker = بالتناوب، رقم { $number }
+comparing-glass = من خلال الورقة، { $share }٪ من الوجه الآخر
+light-through = { $share }٪ من الضوء عبر الورقة
+
+## القياس
+
+ruler = مسطرة
+line = مسار
+area = مساحة
+angle = زاوية
+profile = تضاريس
+laid-lines = خطوط الورق
+stroke = خط الرسم
+probe = اللون
+reading-out = ماذا يوجد هنا
+ruler-hint = المس نقطتين
+line-hint = المس نقطة بعد أخرى، والأخيرة مرتين
+area-hint = المس الزوايا، والأخيرة مرتين
+angle-hint = المس ثلاث نقاط؛ الثانية هي الرأس
+profile-hint = المس طرفي خط
+laid-lines-hint = المس ركنين من منطقة بلا ثقوب
+stroke-hint = المس الورق على جانبي الخط
+probe-hint = المس نقطة واحدة
+difference-hint = المس نقطتين على ورقة واحدة
+reading-hint = المس الورقة لتقرأ ما يوجد فيها
+
+## الشرح
+
+at-true-size = بالحجم الحقيقي
+at-true-size-perhaps = بالحجم الحقيقي، إن كانت الشاشة بدقة 96 بكسل في البوصة
+no-hotspots = لا تفاصيل على هذا الجانب
+hotspot-leads = المس مرة أخرى: { $title }
+
+## إرشادات
+
+touch-to-turn = إصبع واحدة تدير الورقة
+pinch-to-zoom = إصبعان تقرّبانها
+drag-lamp = أمسك المصباح وحرّكه
+two-visitors = يمكن لأحدكم أن يمسك الورقة ولآخر أن يمسك المصباح
+attract-invitation = المس الورقة
+countdown = { $seconds ->
+        [zero] العودة إلى البداية الآن
+        [one] العودة إلى البداية بعد ثانية واحدة
+        [two] العودة إلى البداية بعد ثانيتين
+        [few] العودة إلى البداية بعد { $seconds } ثوانٍ
+        [many] العودة إلى البداية بعد { $seconds } ثانية
+       *[other] العودة إلى البداية بعد { $seconds } ثانية
+    }
+stay = ما زلت هنا
+closed = مغلق
+
+## الموظفون
+
+staff-pin = رمز الموظفين
+staff-wrong = رمز خاطئ
+staff-wait = { $seconds ->
+        [zero] انتظر قليلًا
+        [one] انتظر ثانية واحدة
+        [two] انتظر ثانيتين
+        [few] انتظر { $seconds } ثوانٍ
+        [many] انتظر { $seconds } ثانية
+       *[other] انتظر { $seconds } ثانية
+    }
+staff-quit = إنهاء Recto
+staff-restart = إعادة التشغيل
+staff-next-exhibit = المعرض التالي
+staff-hours-off = إبقاء العرض مفتوحًا
+staff-status = الحالة

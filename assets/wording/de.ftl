@@ -1,0 +1,149 @@
+# Was Recto Besuchern sagt, auf Deutsch.
+
+language-name = Deutsch
+
+## Bedienung
+
+flip = Wenden
+lamp = Lampe
+scenes = Ansichten
+compare = Vergleichen
+overlays = Ebenen
+light-table = Leuchttisch
+measure = Messen
+home = Anfang
+language = Sprache
+text-size = Schriftgröße
+contrast = Kontrast
+motion = Bewegung
+help = Hilfe
+close = Schließen
+next = Weiter
+previous = Vorige
+back = Zurück
+done = Fertig
+take-back = Rückgängig
+more = Mehr
+enlarge = Große Schrift
+normal-size = Normalschrift
+high-contrast = Hoher Kontrast
+reduced-motion = Ruhiger
+zoom-in = Näher
+zoom-out = Weiter weg
+true-size = Originalgröße
+hotspots = Details
+caption = Bildtext
+legend = Legende
+
+## Das Blatt
+
+recto = Recto
+verso = Verso
+before = Vorher
+after = Nachher
+
+## Lampe
+
+zenithal = Von oben
+oblique = Unter 45°
+raking-left = Von links
+raking-right = Von rechts
+raking-top = Vom Oberrand
+raking-bottom = Vom Unterrand
+intensity = Helligkeit
+brighter = Heller
+dimmer = Dunkler
+warmer = Wärmer
+cooler = Kühler
+lamp-elevation = { $elevation }° hoch
+lamp-azimuth = aus { $azimuth }°
+colour-temperature = { $kelvin } K
+lamp-overhead = Lampe senkrecht darüber
+lamp-place = Lampe { $elevation }° hoch, { $from ->
+        [right] von rechts
+        [upper-right] von rechts oben
+        [top] vom oberen Rand
+        [upper-left] von links oben
+        [left] von links
+        [lower-left] von links unten
+        [bottom] vom unteren Rand
+       *[lower-right] von rechts unten
+    } ({ $azimuth }°)
+
+## Vergleiche und Ebenen
+
+curtain = Vorhang
+side-by-side = Nebeneinander
+blend = Überblenden
+loupe = Lupe
+difference = Unterschied
+flicker = Im Wechsel
+glass = Durchsicht
+opacity = Stärke
+no-overlay = Keine Ebene
+no-state = das Blatt selbst
+comparing-curtain = Vorhang
+comparing-side-by-side = nebeneinander
+comparing-blend = überblendet, { $share } % vom zweiten
+comparing-loupe = Lupe, { $times }fach
+comparing-difference = Unterschied
+comparing-flicker = im Wechsel, Nummer { $number }
+comparing-glass = Durchsicht, { $share } % der anderen Seite
+light-through = { $share } % des Lichts durch das Blatt
+
+## Messen
+
+ruler = Lineal
+line = Weg
+area = Fläche
+angle = Winkel
+profile = Relief
+laid-lines = Siebstruktur
+stroke = Strich
+probe = Farbe
+reading-out = Was hier ist
+ruler-hint = Zwei Stellen berühren
+line-hint = Stelle um Stelle berühren, die letzte zweimal
+area-hint = Die Ecken berühren, die letzte zweimal
+angle-hint = Drei Stellen berühren; die zweite ist der Scheitel
+profile-hint = Beide Enden einer Linie berühren
+laid-lines-hint = Zwei Ecken eines Bereichs ohne Löcher berühren
+stroke-hint = Das Papier zu beiden Seiten des Strichs berühren
+probe-hint = Eine Stelle berühren
+difference-hint = Zwei Stellen eines Blattes berühren
+reading-hint = Das Blatt berühren, um zu lesen, was dort ist
+
+## Bildtext
+
+at-true-size = Originalgröße
+at-true-size-perhaps = Originalgröße, falls der Bildschirm 96 Pixel pro Zoll hat
+no-hotspots = keine Details auf dieser Seite
+hotspot-leads = Noch einmal berühren: { $title }
+
+## Hinweise
+
+touch-to-turn = Ein Finger dreht das Blatt
+pinch-to-zoom = Zwei Finger holen es näher
+drag-lamp = Die Lampe halten und bewegen
+two-visitors = Eine Person hält das Blatt, eine andere die Lampe
+attract-invitation = Berühren Sie das Blatt
+countdown = { $seconds ->
+        [one] Zurück zum Anfang in { $seconds } Sekunde
+       *[other] Zurück zum Anfang in { $seconds } Sekunden
+    }
+stay = Ich bin noch da
+closed = Geschlossen
+
+## Personal
+
+staff-pin = PIN des Personals
+staff-wrong = Falsche PIN
+staff-wait = { $seconds ->
+        [one] { $seconds } Sekunde warten
+       *[other] { $seconds } Sekunden warten
+    }
+staff-quit = Recto beenden
+staff-restart = Neu starten
+staff-next-exhibit = Nächste Ausstellung
+staff-hours-off = Jetzt geöffnet lassen
+staff-status = Zustand

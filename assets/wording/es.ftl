@@ -1,0 +1,151 @@
+# Lo que Recto dice a los visitantes, en español.
+
+language-name = Español
+
+## Mandos
+
+flip = Dar la vuelta
+lamp = Lámpara
+scenes = Vistas
+compare = Comparar
+overlays = Capas
+light-table = Mesa de luz
+measure = Medir
+home = Inicio
+language = Idioma
+text-size = Texto
+contrast = Contraste
+motion = Movimiento
+help = Ayuda
+close = Cerrar
+next = Siguiente
+previous = Anterior
+back = Volver
+done = Hecho
+take-back = Deshacer
+more = Más
+enlarge = Texto grande
+normal-size = Texto normal
+high-contrast = Alto contraste
+reduced-motion = Menos animado
+zoom-in = Más cerca
+zoom-out = Más lejos
+true-size = Tamaño real
+hotspots = Detalles
+caption = Cartela
+legend = Leyenda
+
+## La hoja
+
+recto = Recto
+verso = Verso
+before = Antes
+after = Después
+
+## Lámpara
+
+zenithal = Cenital
+oblique = A 45°
+raking-left = Izquierda
+raking-right = Derecha
+raking-top = Arriba
+raking-bottom = Abajo
+intensity = Brillo
+brighter = Más clara
+dimmer = Más oscura
+warmer = Más cálida
+cooler = Más fría
+lamp-elevation = altura { $elevation }°
+lamp-azimuth = dirección { $azimuth }°
+colour-temperature = { $kelvin } K
+lamp-overhead = lámpara cenital
+lamp-place = lámpara a { $elevation }° de altura, { $from ->
+        [right] desde la derecha
+        [upper-right] desde arriba a la derecha
+        [top] desde arriba
+        [upper-left] desde arriba a la izquierda
+        [left] desde la izquierda
+        [lower-left] desde abajo a la izquierda
+        [bottom] desde abajo
+       *[lower-right] desde abajo a la derecha
+    } ({ $azimuth }°)
+
+## Comparaciones y capas
+
+curtain = Cortina
+side-by-side = Lado a lado
+blend = Fundido
+loupe = Lupa
+difference = Diferencia
+flicker = Por turnos
+glass = Transparencia
+opacity = Intensidad
+no-overlay = Ninguna capa
+no-state = la hoja misma
+comparing-curtain = cortina
+comparing-side-by-side = lado a lado
+comparing-blend = fundido, { $share } % del segundo
+comparing-loupe = lupa, { $times } aumentos
+comparing-difference = diferencia
+comparing-flicker = por turnos, número { $number }
+comparing-glass = por transparencia, { $share } % del otro lado
+light-through = { $share } % de la luz a través de la hoja
+
+## Medir
+
+ruler = Regla
+line = Recorrido
+area = Superficie
+angle = Ángulo
+profile = Relieve
+laid-lines = Puntizones
+stroke = Trazo
+probe = Color
+reading-out = Qué hay aquí
+ruler-hint = Toque dos puntos
+line-hint = Toque un punto tras otro, el último dos veces
+area-hint = Toque las esquinas, la última dos veces
+angle-hint = Toque tres puntos; el segundo es el vértice
+profile-hint = Toque los dos extremos de una línea
+laid-lines-hint = Toque dos esquinas de una zona sin agujeros
+stroke-hint = Toque el papel a ambos lados del trazo
+probe-hint = Toque un punto
+difference-hint = Toque dos puntos de una misma hoja
+reading-hint = Toque la hoja para leer qué hay en ella
+
+## Cartela
+
+at-true-size = tamaño real
+at-true-size-perhaps = tamaño real, si la pantalla tiene 96 píxeles por pulgada
+no-hotspots = ningún detalle en este lado
+hotspot-leads = Toque otra vez: { $title }
+
+## Consejos
+
+touch-to-turn = Un dedo gira la hoja
+pinch-to-zoom = Dos dedos la acercan
+drag-lamp = Sujete la lámpara y muévala
+two-visitors = Una persona puede sujetar la hoja y otra la lámpara
+attract-invitation = Toque la hoja
+countdown = { $seconds ->
+        [one] Vuelta al inicio en { $seconds } segundo
+        [many] Vuelta al inicio en { $seconds } segundos
+       *[other] Vuelta al inicio en { $seconds } segundos
+    }
+stay = Sigo aquí
+closed = Cerrado
+
+## Personal
+
+staff-pin = PIN del personal
+staff-wrong = PIN incorrecto
+staff-wait = { $seconds ->
+        [one] Espere { $seconds } segundo
+        [many] Espere { $seconds } segundos
+       *[other] Espere { $seconds } segundos
+    }
+staff-quit = Salir de Recto
+staff-restart = Reiniciar
+staff-next-exhibit = Exposición siguiente
+staff-hours-off = Seguir abierto
+staff-status = Estado

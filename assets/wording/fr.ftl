@@ -1,0 +1,151 @@
+# Ce que Recto dit aux visiteurs, en français.
+
+language-name = Français
+
+## Commandes
+
+flip = Retourner
+lamp = Lampe
+scenes = Vues
+compare = Comparer
+overlays = Calques
+light-table = Rétroéclairage
+measure = Mesurer
+home = Accueil
+language = Langue
+text-size = Texte
+contrast = Contraste
+motion = Mouvement
+help = Aide
+close = Fermer
+next = Suivant
+previous = Précédent
+back = Retour
+done = Terminé
+take-back = Annuler
+more = Plus
+enlarge = Texte agrandi
+normal-size = Texte normal
+high-contrast = Fort contraste
+reduced-motion = Moins animé
+zoom-in = Plus près
+zoom-out = Plus loin
+true-size = Taille réelle
+hotspots = Détails
+caption = Cartel
+legend = Légende
+
+## La feuille
+
+recto = Recto
+verso = Verso
+before = Avant
+after = Après
+
+## Lampe
+
+zenithal = Zénithale
+oblique = À 45°
+raking-left = De gauche
+raking-right = De droite
+raking-top = Du haut
+raking-bottom = Du bas
+intensity = Luminosité
+brighter = Plus clair
+dimmer = Plus sombre
+warmer = Plus chaud
+cooler = Plus froid
+lamp-elevation = hauteur { $elevation }°
+lamp-azimuth = direction { $azimuth }°
+colour-temperature = { $kelvin } K
+lamp-overhead = lampe au zénith
+lamp-place = lampe à { $elevation }° de hauteur, { $from ->
+        [right] de droite
+        [upper-right] d’en haut à droite
+        [top] d’en haut
+        [upper-left] d’en haut à gauche
+        [left] de gauche
+        [lower-left] d’en bas à gauche
+        [bottom] d’en bas
+       *[lower-right] d’en bas à droite
+    } ({ $azimuth }°)
+
+## Comparaisons et calques
+
+curtain = Rideau
+side-by-side = Côte à côte
+blend = Fondu
+loupe = Loupe
+difference = Différence
+flicker = Tour à tour
+glass = Transparence
+opacity = Intensité
+no-overlay = Aucun calque
+no-state = la feuille elle-même
+comparing-curtain = rideau
+comparing-side-by-side = côte à côte
+comparing-blend = fondu, { $share } % du second
+comparing-loupe = loupe, { $times } fois
+comparing-difference = différence
+comparing-flicker = tour à tour, numéro { $number }
+comparing-glass = par transparence, { $share } % de l’autre face
+light-through = { $share } % de la lumière à travers la feuille
+
+## Mesurer
+
+ruler = Règle
+line = Tracé
+area = Surface
+angle = Angle
+profile = Relief
+laid-lines = Vergeures
+stroke = Trait
+probe = Couleur
+reading-out = Ce qui est ici
+ruler-hint = Touchez deux points
+line-hint = Touchez un point après l’autre, le dernier deux fois
+area-hint = Touchez les angles, le dernier deux fois
+angle-hint = Touchez trois points ; le deuxième est le sommet
+profile-hint = Touchez les deux bouts d’une ligne
+laid-lines-hint = Touchez deux coins d’une zone sans trous
+stroke-hint = Touchez le papier des deux côtés du trait
+probe-hint = Touchez un point
+difference-hint = Touchez deux points d’une même feuille
+reading-hint = Touchez la feuille pour lire ce qui s’y trouve
+
+## Cartel
+
+at-true-size = taille réelle
+at-true-size-perhaps = taille réelle, si l’écran a 96 pixels par pouce
+no-hotspots = aucun détail sur cette face
+hotspot-leads = Touchez encore : { $title }
+
+## Conseils
+
+touch-to-turn = Un doigt tourne la feuille
+pinch-to-zoom = Deux doigts la rapprochent
+drag-lamp = Tenez la lampe et déplacez-la
+two-visitors = L’un peut tenir la feuille, l’autre la lampe
+attract-invitation = Touchez la feuille
+countdown = { $seconds ->
+        [one] Retour au début dans { $seconds } seconde
+        [many] Retour au début dans { $seconds } secondes
+       *[other] Retour au début dans { $seconds } secondes
+    }
+stay = Je suis encore là
+closed = Fermé
+
+## Personnel
+
+staff-pin = Code du personnel
+staff-wrong = Code erroné
+staff-wait = { $seconds ->
+        [one] Attendez { $seconds } seconde
+        [many] Attendez { $seconds } secondes
+       *[other] Attendez { $seconds } secondes
+    }
+staff-quit = Quitter Recto
+staff-restart = Redémarrer
+staff-next-exhibit = Exposition suivante
+staff-hours-off = Rester ouvert
+staff-status = État

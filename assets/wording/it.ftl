@@ -1,0 +1,151 @@
+# Quello che Recto dice ai visitatori, in italiano.
+
+language-name = Italiano
+
+## Comandi
+
+flip = Gira
+lamp = Lampada
+scenes = Vedute
+compare = Confronta
+overlays = Livelli
+light-table = Controluce
+measure = Misura
+home = Inizio
+language = Lingua
+text-size = Testo
+contrast = Contrasto
+motion = Movimento
+help = Aiuto
+close = Chiudi
+next = Avanti
+previous = Precedente
+back = Indietro
+done = Fatto
+take-back = Annulla
+more = Altro
+enlarge = Testo grande
+normal-size = Testo normale
+high-contrast = Alto contrasto
+reduced-motion = Meno movimento
+zoom-in = Più vicino
+zoom-out = Più lontano
+true-size = Formato reale
+hotspots = Dettagli
+caption = Didascalia
+legend = Legenda
+
+## Il foglio
+
+recto = Recto
+verso = Verso
+before = Prima
+after = Dopo
+
+## Lampada
+
+zenithal = Zenitale
+oblique = A 45°
+raking-left = Da sinistra
+raking-right = Da destra
+raking-top = Dall’alto
+raking-bottom = Dal basso
+intensity = Luminosità
+brighter = Più chiaro
+dimmer = Più scuro
+warmer = Più calda
+cooler = Più fredda
+lamp-elevation = altezza { $elevation }°
+lamp-azimuth = da { $azimuth }°
+colour-temperature = { $kelvin } K
+lamp-overhead = lampada a perpendicolo
+lamp-place = lampada a { $elevation }° di altezza, { $from ->
+        [right] da destra
+        [upper-right] dall’alto a destra
+        [top] dall’alto
+        [upper-left] dall’alto a sinistra
+        [left] da sinistra
+        [lower-left] dal basso a sinistra
+        [bottom] dal basso
+       *[lower-right] dal basso a destra
+    } ({ $azimuth }°)
+
+## Confronti e livelli
+
+curtain = Sipario
+side-by-side = Affiancati
+blend = Dissolvenza
+loupe = Lente
+difference = Differenza
+flicker = Alternati
+glass = In trasparenza
+opacity = Intensità
+no-overlay = Nessun livello
+no-state = il foglio così com’è
+comparing-curtain = sipario
+comparing-side-by-side = affiancati
+comparing-blend = dissolvenza, { $share }% del secondo
+comparing-loupe = lente, { $times } ingrandimenti
+comparing-difference = differenza
+comparing-flicker = alternati, numero { $number }
+comparing-glass = in trasparenza, { $share }% dell’altro lato
+light-through = { $share }% della luce attraverso il foglio
+
+## Misurare
+
+ruler = Righello
+line = Percorso
+area = Area
+angle = Angolo
+profile = Rilievo
+laid-lines = Vergelle
+stroke = Tratto
+probe = Colore
+reading-out = Che cosa c’è qui
+ruler-hint = Tocca due punti
+line-hint = Tocca un punto dopo l’altro, l’ultimo due volte
+area-hint = Tocca gli angoli, l’ultimo due volte
+angle-hint = Tocca tre punti; il secondo è il vertice
+profile-hint = Tocca i due estremi di una linea
+laid-lines-hint = Tocca due angoli di una zona senza fori
+stroke-hint = Tocca la carta ai due lati del tratto
+probe-hint = Tocca un punto
+difference-hint = Tocca due punti dello stesso foglio
+reading-hint = Tocca il foglio per leggere che cosa c’è
+
+## Didascalia
+
+at-true-size = formato reale
+at-true-size-perhaps = formato reale, se lo schermo ha 96 pixel per pollice
+no-hotspots = nessun dettaglio su questo lato
+hotspot-leads = Tocca ancora: { $title }
+
+## Suggerimenti
+
+touch-to-turn = Con un dito giri il foglio
+pinch-to-zoom = Con due dita lo avvicini
+drag-lamp = Tieni la lampada e spostala
+two-visitors = Uno può tenere il foglio, un altro la lampada
+attract-invitation = Tocca il foglio
+countdown = { $seconds ->
+        [one] Si torna all’inizio tra { $seconds } secondo
+        [many] Si torna all’inizio tra { $seconds } secondi
+       *[other] Si torna all’inizio tra { $seconds } secondi
+    }
+stay = Sono ancora qui
+closed = Chiuso
+
+## Personale
+
+staff-pin = PIN del personale
+staff-wrong = PIN errato
+staff-wait = { $seconds ->
+        [one] Attendere { $seconds } secondo
+        [many] Attendere { $seconds } secondi
+       *[other] Attendere { $seconds } secondi
+    }
+staff-quit = Esci da Recto
+staff-restart = Riavvia
+staff-next-exhibit = Mostra successiva
+staff-hours-off = Lascia aperto ora
+staff-status = Stato

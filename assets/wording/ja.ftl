@@ -1,0 +1,143 @@
+# Recto が来館者に示す言葉、日本語。
+
+language-name = 日本語
+
+## 操作
+
+flip = 裏返す
+lamp = ランプ
+scenes = 見どころ
+compare = 比べる
+overlays = レイヤー
+light-table = 透過光
+measure = 測る
+home = 最初へ
+language = 言語
+text-size = 文字サイズ
+contrast = コントラスト
+motion = 動き
+help = 使い方
+close = 閉じる
+next = 次へ
+previous = 前へ
+back = 戻る
+done = 完了
+take-back = 取り消す
+more = その他
+enlarge = 文字を大きく
+normal-size = 標準の文字
+high-contrast = 高コントラスト
+reduced-motion = 動きを減らす
+zoom-in = 近づける
+zoom-out = 遠ざける
+true-size = 原寸大
+hotspots = 細部
+caption = 解説
+legend = 凡例
+
+## 紙
+
+recto = 表
+verso = 裏
+before = 以前
+after = 以後
+
+## ランプ
+
+zenithal = 真上から
+oblique = 斜め45°
+raking-left = 左から
+raking-right = 右から
+raking-top = 上辺から
+raking-bottom = 下辺から
+intensity = 明るさ
+brighter = 明るく
+dimmer = 暗く
+warmer = 暖色へ
+cooler = 寒色へ
+lamp-elevation = 高さ{ $elevation }°
+lamp-azimuth = 方位{ $azimuth }°
+colour-temperature = { $kelvin } K
+lamp-overhead = ランプは真上
+lamp-place = ランプの高さ{ $elevation }°、{ $from ->
+        [right] 右から
+        [upper-right] 右上から
+        [top] 上から
+        [upper-left] 左上から
+        [left] 左から
+        [lower-left] 左下から
+        [bottom] 下から
+       *[lower-right] 右下から
+    }（{ $azimuth }°）
+
+## 比較とレイヤー
+
+curtain = カーテン
+side-by-side = 並べる
+blend = 混ぜる
+loupe = ルーペ
+difference = 差
+flicker = 交互
+glass = 透かし見
+opacity = 濃さ
+no-overlay = レイヤーなし
+no-state = 紙そのもの
+comparing-curtain = カーテン
+comparing-side-by-side = 並べて比較
+comparing-blend = 混合、二つ目が{ $share }%
+comparing-loupe = ルーペ、{ $times }倍
+comparing-difference = 差
+comparing-flicker = 交互、{ $number }番
+comparing-glass = 透かし見、反対の面が{ $share }%
+light-through = 紙を通る光{ $share }%
+
+## 計測
+
+ruler = 定規
+line = 道のり
+area = 面積
+angle = 角度
+profile = 起伏
+laid-lines = 簀の目
+stroke = 線の太さ
+probe = 色
+reading-out = ここにあるもの
+ruler-hint = 二か所に触れてください
+line-hint = 順に触れ、最後は二度触れてください
+area-hint = 角に順に触れ、最後は二度触れてください
+angle-hint = 三か所に触れてください。二番目が角の頂点です
+profile-hint = 線の両端に触れてください
+laid-lines-hint = 穴のない範囲の二つの角に触れてください
+stroke-hint = 線の両側の紙に触れてください
+probe-hint = 一か所に触れてください
+difference-hint = 同じ紙の二か所に触れてください
+reading-hint = 紙に触れると、そこにあるものが読めます
+
+## 解説
+
+at-true-size = 原寸大
+at-true-size-perhaps = 画面が1インチ96画素なら原寸大
+no-hotspots = この面に細部の解説はありません
+hotspot-leads = もう一度触れる：{ $title }
+
+## 案内
+
+touch-to-turn = 一本の指で紙を傾けます
+pinch-to-zoom = 二本の指で近づけます
+drag-lamp = ランプを押さえて動かします
+two-visitors = 一人が紙を、もう一人がランプを動かせます
+attract-invitation = 紙に触れてください
+countdown = あと{ $seconds }秒で最初に戻ります
+stay = まだ見ています
+closed = 閉館中
+
+## 職員
+
+staff-pin = 職員用の暗証番号
+staff-wrong = 暗証番号が違います
+staff-wait = { $seconds }秒お待ちください
+staff-quit = Recto を終了
+staff-restart = 再起動
+staff-next-exhibit = 次の展示
+staff-hours-off = このまま開ける
+staff-status = 状態
