@@ -147,7 +147,10 @@ impl Darkroom {
                     ..default()
                 },
                 target_of(&text_target),
-                TextCamera { height: 1.0 },
+                TextCamera {
+                    height: 1.0,
+                    foot: 0.0,
+                },
                 Msaa::Off,
                 Tonemapping::None,
             ))
@@ -227,6 +230,33 @@ impl Darkroom {
     pub fn take(&mut self, shown: Shown, size: [u32; 2]) -> Result<Picture, ShotError> {
         let has_legend = has_legend(&shown.scene);
         self.arrange(shown, size)?;
+        self.capture(has_legend)
+    }
+
+    /// What the room shows of itself, where somebody in it steers, with all its texts and controls: as
+    /// it is in the next frames, when everything for it is on the GPU.
+    ///
+    /// # Errors
+    /// As [`Darkroom::arrange`].
+    pub fn see(&mut self, size: [u32; 2]) -> Result<Picture, ShotError> {
+        self.look(UVec2::from_array(size));
+        self.activate(true, true);
+        for _ in 0..SETTLING_FRAMES {
+            self.frame()?;
+        }
+        while !self.world().resource::<Arranged>().is_settled() {
+            self.world().resource_mut::<Library>().wait();
+            self.frame()?;
+        }
+        self.check_pipelines()?;
+        let picture = self.capture(true);
+        self.look(UVec2::ONE);
+        self.activate(true, true);
+        picture
+    }
+
+    /// The picture of the frame that comes next.
+    fn capture(&mut self, has_legend: bool) -> Result<Picture, ShotError> {
         let wanted = [Some(&self.target), has_legend.then_some(&self.text_target)];
         let targets: Vec<Handle<Image>> = wanted.into_iter().flatten().cloned().collect();
         let taken: Vec<Taken> = targets
@@ -259,8 +289,8 @@ impl Darkroom {
             })
             .collect();
         Ok(Picture {
-            width: size[0],
-            height: size[1],
+            width: self.size.x,
+            height: self.size.y,
             pixels,
             legend,
         })
@@ -283,6 +313,7 @@ impl Darkroom {
             target_of(&self.text_target),
             TextCamera {
                 height: size.y as f32,
+                foot: 0.0,
             },
         ));
     }

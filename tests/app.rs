@@ -4,6 +4,10 @@
 mod hand;
 #[path = "app/hotspots.rs"]
 mod hotspots;
+#[path = "app/monkey.rs"]
+mod monkey;
+#[path = "app/session.rs"]
+mod session;
 #[cfg(target_os = "linux")]
 #[path = "app/window.rs"]
 mod window;

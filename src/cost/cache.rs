@@ -200,20 +200,22 @@ pub fn keep(table: &Table) {
     }
 }
 
-/// `$XDG_CACHE_HOME/recto/costs-VERSION-DEVICE.csv`.
-fn path(device: &str) -> Option<PathBuf> {
+/// Where the program keeps what it can make again: `$XDG_CACHE_HOME/recto`.
+pub fn cache_folder() -> Option<PathBuf> {
     let absolute = |name| {
         std::env::var_os(name)
             .map(PathBuf::from)
             .filter(|p| p.is_absolute())
     };
     let cache = absolute("XDG_CACHE_HOME").or_else(|| Some(absolute("HOME")?.join(".cache")))?;
+    Some(cache.join("recto"))
+}
+
+/// `costs-VERSION-DEVICE.csv` in it.
+fn path(device: &str) -> Option<PathBuf> {
+    let cache = cache_folder()?;
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
     let device: String = device.chars().map(plain).collect();
     let version = env!("CARGO_PKG_VERSION");
-    Some(
-        cache
-            .join("recto")
-            .join(format!("costs-{version}-{device}.csv")),
-    )
+    Some(cache.join(format!("costs-{version}-{device}.csv")))
 }

@@ -7,7 +7,9 @@ mod floor;
 mod sheets;
 mod stopwatch;
 
-pub use cache::{Effort, MeasureError, STEPS, device_name, keep, known, measure, measured};
+pub use cache::{
+    Effort, MeasureError, STEPS, cache_folder, device_name, keep, known, measure, measured,
+};
 pub use compiled::{CompileError, Composer, instructions};
 pub use floor::{Floor, FloorPlugin};
 pub use sheets::{Sheets, SheetsError};

@@ -471,6 +471,21 @@ pub enum LampKind {
 }
 
 impl LampKind {
+    /// Gives `gain` times the light.
+    pub fn dim(&mut self, gain: f64) {
+        match self {
+            Self::Distant { illuminance, .. } => illuminance.0 *= gain,
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity.0 *= gain,
+            Self::Rectangle { luminance, .. }
+            | Self::Disc { luminance, .. }
+            | Self::LightTable { luminance } => luminance.0 *= gain,
+            Self::Ies { photometry, .. } => {
+                let dimmed = Photometry::clone(photometry).dimmed(gain);
+                *photometry = Arc::new(dimmed);
+            }
+        }
+    }
+
     /// How high it is over the middle of the sheet; `None` for a light table.
     pub fn elevation_deg(&self) -> Option<f64> {
         match self {

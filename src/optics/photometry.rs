@@ -131,6 +131,14 @@ impl Numbers<'_> {
 }
 
 impl Photometry {
+    /// The same lamp with `gain` times the light.
+    pub fn dimmed(mut self, gain: f64) -> Self {
+        self.candela.iter_mut().for_each(|candela| *candela *= gain);
+        self.peak *= gain;
+        self.stated_lumens = self.stated_lumens.map(|lumens| lumens * gain);
+        self
+    }
+
     /// Reads the text of a file of any edition that begins with its name, `IESNA…` or `IES:LM-63…`.
     ///
     /// # Errors

@@ -41,10 +41,12 @@ impl Plugin for LegendPlugin {
 #[derive(Resource, Clone, Default)]
 pub struct Face(pub Handle<Font>);
 
-/// The camera that draws the texts, and the height of its picture in pixels.
+/// The camera that draws the texts, and the height of its picture in pixels, at the foot of which so
+/// many are somebody else's.
 #[derive(Component)]
 pub struct TextCamera {
     pub height: f32,
+    pub foot: f32,
 }
 
 /// The legend's root node.
@@ -111,7 +113,7 @@ fn draw(
             Node {
                 position_type: PositionType::Absolute,
                 right: Val::Px(size),
-                bottom: Val::Px(size),
+                bottom: Val::Px(size + text.foot),
                 padding: UiRect::all(Val::Px(size * 0.7)),
                 row_gap: Val::Px(size * 0.35),
                 flex_direction: FlexDirection::Column,

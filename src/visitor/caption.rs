@@ -2,7 +2,16 @@
 
 use bevy::prelude::*;
 
-use super::{comparing, hand::Hand};
+use super::{
+    attract::Attract,
+    comparing,
+    controls::{
+        Interface,
+        draw::{Languages, ProgramWords},
+        facts::{self, Spoken},
+    },
+    hand::Hand,
+};
 use crate::{
     manifest::exhibit::{Hotspot, Member},
     optics::tier::Tier,
@@ -20,7 +29,7 @@ const TITLE: f32 = 1.25;
 const QUIET: f32 = 0.85;
 
 /// What the keys do, for the list of them and for the manual.
-pub const KEYS: [(&str, &str); 29] = [
+pub const KEYS: [(&str, &str); 31] = [
     ("drag", "turn the sheet; move it when zoomed in"),
     ("wheel, + −", "zoom"),
     ("double click", "true size and back"),
@@ -43,10 +52,9 @@ pub const KEYS: [(&str, &str); 29] = [
     ("N, P", "next scene, back"),
     ("H", "the scene as it was"),
     ("I", "hotspots: click on one to open it, twice to go there"),
-    (
-        "Tab, Shift + Tab, Enter",
-        "next hotspot, back, to its scene",
-    ),
+    ("J, Shift + J, Enter", "next hotspot, back, to its scene"),
+    ("Tab, Shift + Tab, Space", "next control, back, touch it"),
+    ("U", "controls"),
     ("M, Shift + M", "next measuring tool, back: click to lay it"),
     (
         "Enter, Backspace",
@@ -89,6 +97,8 @@ pub struct Panel;
 pub struct Drawn {
     caption: Vec<String>,
     keys: bool,
+    from_right: bool,
+    foot: f32,
     size: f32,
 }
 
@@ -96,6 +106,8 @@ pub struct Drawn {
 pub fn draw(
     mut commands: Commands,
     (shown, hand, texts): (Res<Shown>, Res<Hand>, Res<Texts>),
+    (attract, interface): (Res<Attract>, Res<Interface>),
+    (words, languages): (Res<ProgramWords>, Res<Languages>),
     face: Option<Res<Face>>,
     cameras: Query<(Entity, &TextCamera)>,
     panels: Query<Entity, With<Panel>>,
@@ -104,17 +116,25 @@ pub fn draw(
     let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
         return;
     };
-    let size = text_size(text.height) * QUIET;
+    let size = text_size(text.height) * QUIET * interface.text_factor();
+    let spoken = Spoken {
+        wordings: &words.0,
+        language: languages.tag(interface.language),
+    };
+    let invitation = attract.is_touring();
     let wanted = Drawn {
         caption: match hand.open_hotspot() {
-            Some(hotspot) => hotspot_lines(&shown, hotspot),
-            None if texts.caption => lines(&shown, &hand),
+            Some(hotspot) => hotspot_lines(&shown, hotspot, spoken),
+            None if texts.caption => lines(&shown, &hand, spoken),
             None => Vec::new(),
         }
         .into_iter()
         .chain(texts.notice.clone())
+        .chain(invitation.then(|| spoken.say("attract-invitation")))
         .collect(),
         keys: texts.keys,
+        from_right: spoken.from_right(),
+        foot: text.foot,
         size,
     };
     if *drawn == wanted {
@@ -124,9 +144,15 @@ pub fn draw(
         commands.entity(panel).despawn();
     }
     if !wanted.caption.is_empty() {
+        let side = |wanted: bool| if wanted { Val::Px(size) } else { Val::Auto };
         let node = Node {
-            left: Val::Px(size),
-            bottom: Val::Px(size),
+            left: side(!wanted.from_right),
+            right: side(wanted.from_right),
+            bottom: Val::Px(size + wanted.foot),
+            align_items: match wanted.from_right {
+                true => AlignItems::FlexEnd,
+                false => AlignItems::FlexStart,
+            },
             ..panel_node(size)
         };
         commands
@@ -181,7 +207,7 @@ pub(super) fn panel_node(size: f32) -> Node {
 }
 
 /// The caption's lines, the title first.
-pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
+fn lines(shown: &Shown, hand: &Hand, spoken: Spoken) -> Vec<String> {
     let drawing = shown.exhibit.drawing_of(&shown.scene);
     let say = |wording| shown.text(wording).unwrap_or_default();
     let title = match say(&drawing.title) {
@@ -197,11 +223,12 @@ pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
         "" => &state.id,
         title => title,
     });
-    let lamp = hand.lamp().map(|lamp| lamp.words()).unwrap_or_default();
+    let lamp = hand.lamp().map(|lamp| facts::lamp_words(lamp, spoken));
+    let lamp = lamp.unwrap_or_default();
     let size = match hand.at_true_size() {
-        Some(true) => "true size",
-        Some(false) => "true size, if the display has 96 pixels an inch",
-        None => "",
+        Some(true) => spoken.say("at-true-size"),
+        Some(false) => spoken.say("at-true-size-perhaps"),
+        None => String::new(),
     };
     // What everybody sees who asked for nothing needs no name.
     let tier = match hand.tier() {
@@ -209,27 +236,36 @@ pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
         tier => tier.name(),
     };
     let compared = shown.scene.compare.as_ref().map(|comparison| {
-        let names: Vec<String> = comparison.of.iter().map(|of| name(shown, *of)).collect();
-        format!("{}: {}", comparing::words(comparison), names.join(" | "))
+        let names = comparison.of.iter().map(|of| name(shown, *of, spoken));
+        let names: Vec<String> = names.collect();
+        format!(
+            "{}: {}",
+            comparing::words(comparison, spoken),
+            names.join(" | ")
+        )
     });
     let compared = compared.unwrap_or_default();
     let through = match shown.scene.transmitted {
         0.0 => String::new(),
-        share => format!("{:.0} % of the light through the sheet", share * 100.0),
+        share => {
+            let share = (share * 100.0).round();
+            spoken.fill("light-through", &[("share", share.into())])
+        }
     };
     let hotspots = match drawing.hotspots.iter().any(|h| h.side == shown.scene.side) {
-        false if hand.shows_hotspots() => "no hotspots on this side",
-        _ => "",
+        false if hand.shows_hotspots() => spoken.say("no-hotspots"),
+        _ => String::new(),
     };
+    let side = facts::side_words(shown.scene.side, spoken);
     let parts = [
-        shown.scene.side.word(),
+        side.as_str(),
         state,
         &compared,
         &lamp,
         &through,
-        size,
+        &size,
         tier,
-        hotspots,
+        &hotspots,
     ];
     lines.push(joined(&parts));
     lines.retain(|line| !line.is_empty());
@@ -237,12 +273,12 @@ pub fn lines(shown: &Shown, hand: &Hand) -> Vec<String> {
 }
 
 /// What an open hotspot says, its title first, and where it leads.
-fn hotspot_lines(shown: &Shown, hotspot: &Hotspot) -> Vec<String> {
+fn hotspot_lines(shown: &Shown, hotspot: &Hotspot, spoken: Spoken) -> Vec<String> {
     let say = |wording| shown.text(wording).unwrap_or_default();
     let scene = hotspot.scene.map(|scene| &shown.exhibit.scenes[scene]);
     let leads = scene.map_or(String::new(), |scene| {
         let title = shown.text(&scene.title).unwrap_or(&scene.id);
-        format!("Enter, or another click: {title}")
+        spoken.fill("hotspot-leads", &[("title", title.into())])
     });
     let mut lines = vec![
         say(&hotspot.title).to_owned(),
@@ -254,12 +290,12 @@ fn hotspot_lines(shown: &Shown, hotspot: &Hotspot) -> Vec<String> {
 }
 
 /// What a member of a comparison is called.
-pub(super) fn name(shown: &Shown, member: Member) -> String {
+pub(super) fn name(shown: &Shown, member: Member, spoken: Spoken) -> String {
     let drawing = shown.exhibit.drawing_of(&shown.scene);
     let (title, id) = match member {
         Member::State(Some(state)) => (&drawing.states[state].title, &drawing.states[state].id),
-        Member::State(None) => return "no state".to_owned(),
-        Member::Side(side) => return side.word().to_owned(),
+        Member::State(None) => return spoken.say("no-state"),
+        Member::Side(side) => return facts::side_words(side, spoken),
         Member::Overlay(overlay) => {
             let overlay = &drawing.overlays[overlay];
             (&overlay.title, &overlay.id)

@@ -5,6 +5,11 @@ use bevy::prelude::*;
 
 use super::{
     caption::{self, Texts},
+    controls::{
+        Interface,
+        draw::{Languages, ProgramWords},
+        facts::Spoken,
+    },
     marks::{self, Ink, Mark, Marks},
 };
 use crate::{
@@ -41,6 +46,45 @@ const TURN_DEG: f64 = 15.0;
 /// Of a loupe, as shares of the picture's height.
 const RADIUS: [f64; 2] = [0.05, 1.0];
 
+/// The members that a mode compares: those of `written`, or else what the scene's drawing has.
+fn members(
+    exhibit: &Exhibit,
+    scene: &Scene,
+    written: Option<&Comparison>,
+    mode: CompareMode,
+) -> Vec<Member> {
+    match (mode, written) {
+        (CompareMode::Glass, _) => exhibit.both_sides(scene),
+        (_, Some(written)) => written.of.clone(),
+        (_, None) => exhibit.comparable(scene),
+    }
+}
+
+/// The modes that have something to compare, in their order.
+pub fn modes(exhibit: &Exhibit, scene: &Scene, written: Option<&Comparison>) -> Vec<CompareMode> {
+    let count = |mode: CompareMode| members(exhibit, scene, written, mode).len();
+    let shown = |mode: &CompareMode| mode.allowed_instead_of(count(*mode)).is_none();
+    MODES.into_iter().filter(shown).collect()
+}
+
+/// The comparison of this mode, otherwise like the one that is shown or written.
+pub fn in_mode(
+    exhibit: &Exhibit,
+    scene: &Scene,
+    written: Option<&Comparison>,
+    mode: CompareMode,
+) -> Comparison {
+    let of = members(exhibit, scene, written, mode);
+    match scene.compare.as_ref().or(written) {
+        Some(like) => Comparison {
+            mode,
+            of,
+            ..like.clone()
+        },
+        None => Comparison::new(mode, of),
+    }
+}
+
 /// The comparison after (`by` 1) or before (−1) `now`; those of `written` are compared, or else what
 /// the scene's drawing has.
 pub fn stepped(
@@ -49,29 +93,13 @@ pub fn stepped(
     written: Option<&Comparison>,
     by: i32,
 ) -> Option<Comparison> {
+    let modes = modes(exhibit, scene, written);
     let now = scene.compare.as_ref();
-    let of: Vec<Member> = match written {
-        Some(written) => written.of.clone(),
-        None => exhibit.comparable(scene),
-    };
-    let members = |mode: CompareMode| match mode {
-        CompareMode::Glass => exhibit.both_sides(scene),
-        _ => of.clone(),
-    };
-    let shown = |mode: &CompareMode| mode.allowed_instead_of(members(*mode).len()).is_none();
-    let modes: Vec<CompareMode> = MODES.into_iter().filter(shown).collect();
     let place = now.and_then(|now| modes.iter().position(|mode| *mode == now.mode));
     let place = place.map_or(0, |place| place + 1);
     let next = super::view::wrapped(place, by, modes.len() + 1);
     let mode = modes[next.checked_sub(1)?];
-    Some(match now.or(written) {
-        Some(like) => Comparison {
-            mode,
-            of: members(mode),
-            ..like.clone()
-        },
-        None => Comparison::new(mode, members(mode)),
-    })
+    Some(in_mode(exhibit, scene, written, mode))
 }
 
 /// Moves what a key moves: the curtain, the share of a blend, a loupe's magnification, the top of a
@@ -129,9 +157,14 @@ pub fn take_turns(comparison: &mut Comparison) {
 /// Lays edges and names over members that have parts of the picture, in a window only.
 pub fn lay(
     (shown, texts): (Res<Shown>, Res<Texts>),
+    (words, languages, interface): (Res<ProgramWords>, Res<Languages>, Res<Interface>),
     windows: Query<&Window>,
     mut marks: ResMut<Marks>,
 ) {
+    let spoken = Spoken {
+        wordings: &words.0,
+        language: languages.tag(interface.language),
+    };
     let Ok(window) = windows.single() else {
         return;
     };
@@ -147,7 +180,7 @@ pub fn lay(
             if let Some(at) = part.top(shown.aspect).filter(|_| texts.caption) {
                 wanted.push(Mark::Words {
                     at: marks::px(at, window.size()),
-                    text: caption::name(&shown, *member),
+                    text: caption::name(&shown, *member, spoken),
                     is_centred: true,
                 });
             }
@@ -159,18 +192,21 @@ pub fn lay(
 }
 
 /// For the caption.
-pub fn words(comparison: &Comparison) -> String {
-    let share = |share: f64| format!("{:.0} %", share * 100.0);
+pub fn words(comparison: &Comparison, spoken: Spoken) -> String {
+    let share = (comparison.at * 100.0).round();
     match comparison.mode {
-        CompareMode::Curtain => "curtain".into(),
-        CompareMode::SideBySide => "side by side".into(),
-        CompareMode::Blend => format!("blend, {} of the second", share(comparison.at)),
-        CompareMode::Loupe => format!("loupe, {:.1} times", comparison.magnify),
-        CompareMode::Difference => "difference".into(),
-        CompareMode::Flicker => format!("in turns, number {}", comparison.turn + 1),
-        CompareMode::Glass => format!(
-            "through the sheet, {} of the other side",
-            share(comparison.at)
-        ),
+        CompareMode::Curtain => spoken.say("comparing-curtain"),
+        CompareMode::SideBySide => spoken.say("comparing-side-by-side"),
+        CompareMode::Difference => spoken.say("comparing-difference"),
+        CompareMode::Blend => spoken.fill("comparing-blend", &[("share", share.into())]),
+        CompareMode::Glass => spoken.fill("comparing-glass", &[("share", share.into())]),
+        CompareMode::Loupe => {
+            let times = (comparison.magnify * 10.0).round() / 10.0;
+            spoken.fill("comparing-loupe", &[("times", times.into())])
+        }
+        CompareMode::Flicker => {
+            let number = comparison.turn as f64 + 1.0;
+            spoken.fill("comparing-flicker", &[("number", number.into())])
+        }
     }
 }

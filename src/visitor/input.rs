@@ -14,12 +14,13 @@ use bevy::{
 };
 use glam::DVec2;
 
-use super::intent::Intent;
+use super::{
+    controls::{Contact, Control, Laid, Phase},
+    intent::Intent,
+    staff::StaffPanel,
+    touches::{Gesture, Touches},
+};
 
-/// Longest time between the two clicks of a double click.
-const DOUBLE: Duration = Duration::from_millis(400);
-/// Farthest that they, or a tap's start and end, lie apart, in logical pixels.
-const NEAR_PX: f32 = 8.0;
 /// Magnification of one notch of the wheel, or one press of a key.
 const NOTCH: f64 = 1.2;
 /// What a touch pad reports for one notch, in pixels.
@@ -34,12 +35,34 @@ const TRANSMIT_STEP: f64 = 0.1;
 const OVERHEAD_DEG: f64 = 90.0;
 const OBLIQUE_DEG: f64 = 45.0;
 const RAKING_DEG: f64 = 12.0;
+/// Nothing was heard for so long of a contact whose visitor has gone, and of one whose end was lost.
+const GONE: Duration = Duration::from_secs(20);
+const LOST: Duration = Duration::from_secs(60);
+/// The mouse's left button is one finger among others.
+const MOUSE: u64 = u64::MAX;
 
-/// What a pressed button holds.
+/// What somebody wants, or touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Held {
-    Sheet,
-    Lamp,
+pub enum Wish {
+    Intent(Intent),
+    Contact(Contact),
+}
+
+/// What there is to be touched.
+#[derive(Clone, Copy)]
+pub struct Ground<'g> {
+    pub controls: &'g Laid,
+    /// Whether a curtain or a loupe is taken at a place (−1…1, y up).
+    pub compare: &'g dyn Fn(DVec2) -> bool,
+}
+
+/// Whom a contact that is not on the sheet belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Owner {
+    Control(Control),
+    Compare,
+    /// What lies between controls.
+    Nobody,
 }
 
 /// What is pressed, and where the pointers are.
@@ -50,60 +73,71 @@ pub struct Devices {
     cursor: Vec2,
     /// Where something points, the mouse or the last finger.
     pointer: Option<Vec2>,
-    held: Option<(MouseButton, Held)>,
+    /// The button that holds the lamp.
+    lamp: Option<MouseButton>,
+    /// The left button is down.
+    pressed: bool,
     shift: bool,
     control: bool,
     lamp_key: bool,
-    /// Where the pointer went down that holds the sheet, while it has not gone far.
-    tap: Option<Vec2>,
-    /// When and where the last click or tap began.
-    click: Option<(Duration, Vec2)>,
-    /// Fingers on the screen, at most two of which are followed.
-    fingers: Vec<(u64, Vec2)>,
+    touches: Touches,
+    /// Contacts beside the sheet.
+    others: Vec<Other>,
+}
+
+/// A contact that is not on the sheet.
+#[derive(Clone, Copy, Debug)]
+struct Other {
+    id: u64,
+    owner: Owner,
+    at: Vec2,
+    heard: Duration,
 }
 
 impl Devices {
-    /// The window has this size, in logical pixels.
-    pub fn resize(&mut self, size: Vec2) {
+    /// The window has this size in logical pixels, so many of which are a millimetre.
+    pub fn resize(&mut self, size: Vec2, px_per_mm: f32) {
         self.size = size;
+        self.touches.measure(px_per_mm);
     }
 
     /// Takes in one event that happened at `now`.
-    pub fn take(&mut self, event: &WindowEvent, now: Duration, mut want: impl FnMut(Intent)) {
+    pub fn take(
+        &mut self,
+        event: &WindowEvent,
+        now: Duration,
+        ground: Ground,
+        mut want: impl FnMut(Wish),
+    ) {
         match event {
-            WindowEvent::KeyboardInput(key) => self.key(key, want),
+            WindowEvent::KeyboardInput(key) => self.key(key, |intent| want(Wish::Intent(intent))),
             WindowEvent::CursorMoved(moved) => {
-                self.wander(moved.position);
                 self.pointer = Some(moved.position);
                 let before = std::mem::replace(&mut self.cursor, moved.position);
-                match self.held {
-                    // A click whose hand trembles moves nothing.
-                    Some((_, Held::Sheet)) if self.tap.is_some() => {}
-                    Some((_, Held::Sheet)) => want(Intent::Drag {
-                        from: self.place(before),
-                        to: self.place(moved.position),
-                    }),
-                    Some((_, Held::Lamp)) => {
-                        let by = (moved.position - before) / (self.size.min_element() / 2.0);
-                        want(Intent::MoveLamp(DVec2::new(by.x.into(), (-by.y).into())));
-                    }
-                    None => {}
+                if self.lamp.is_some() {
+                    let by = (moved.position - before) / (self.size.min_element() / 2.0);
+                    let by = DVec2::new(by.x.into(), (-by.y).into());
+                    want(Wish::Intent(Intent::MoveLamp(by)));
+                } else if self.pressed {
+                    self.go(MOUSE, moved.position, now, want);
                 }
             }
-            WindowEvent::MouseButtonInput(button) => self.button(button, now, want),
-            WindowEvent::MouseWheel(wheel) => want(Intent::Zoom {
+            WindowEvent::MouseButtonInput(button) => self.button(button, now, ground, want),
+            WindowEvent::MouseWheel(wheel) => want(Wish::Intent(Intent::Zoom {
                 at: self.place(self.cursor),
                 factor: NOTCH.powf(notches(wheel)),
-            }),
+            })),
             WindowEvent::CursorLeft(_) => self.pointer = None,
-            WindowEvent::TouchInput(touch) => self.touch(touch, now, want),
+            WindowEvent::TouchInput(touch) => self.touch(touch, now, ground, want),
             WindowEvent::KeyboardFocusLost(_) => {
                 (self.shift, self.control, self.lamp_key) = (false, false, false);
-                self.fingers.clear();
-                self.tap = None;
-                if let Some((_, Held::Sheet)) = self.held.take() {
-                    want(Intent::Release);
+                (self.pressed, self.lamp) = (false, None);
+                for other in std::mem::take(&mut self.others) {
+                    other.tell(Phase::Lost, &mut want);
                 }
+                let size = self.size;
+                self.touches
+                    .clear(|did| want(Wish::Intent(intent(size, did))));
             }
             _ => {}
         }
@@ -114,117 +148,141 @@ impl Devices {
         self.pointer
     }
 
-    /// From logical pixels to −1…1, y up.
-    fn place(&self, at: Vec2) -> DVec2 {
-        let part = (at / self.size.max(Vec2::ONE)).as_dvec2();
-        DVec2::new(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y)
+    /// Whether somebody holds the sheet or a control; one of whom nothing was heard for long has gone, and
+    /// the end of the touch was lost.
+    pub fn is_held(&self, now: Duration) -> bool {
+        let is_there = |other: &Other| now.saturating_sub(other.heard) <= GONE;
+        self.touches.is_held(now, GONE) || self.others.iter().any(is_there)
     }
 
-    /// A pointer that goes far, or a second one, makes a tap a drag.
-    fn wander(&mut self, to: Vec2) {
-        self.tap = self.tap.filter(|from| from.distance(to) <= NEAR_PX);
-    }
-
-    /// A pointer went up that had gone down here, if it was a tap.
-    fn tapped(&mut self, mut want: impl FnMut(Intent)) {
-        if let Some(at) = self.tap.take() {
-            want(Intent::Tap(self.place(at)));
-        }
-    }
-
-    fn button(&mut self, input: &MouseButtonInput, now: Duration, mut want: impl FnMut(Intent)) {
-        if input.state == ButtonState::Released {
-            if let Some((button, held)) = self.held
-                && button == input.button
-            {
-                self.held = None;
-                if held == Held::Sheet {
-                    want(Intent::Release);
-                    self.tapped(want);
-                }
-            }
-            return;
-        }
-        let held = match input.button {
-            MouseButton::Left if self.lamp_key => Held::Lamp,
-            MouseButton::Left => Held::Sheet,
-            MouseButton::Right => Held::Lamp,
-            _ => return,
-        };
-        if self.held.is_some() {
-            return;
-        }
-        self.held = Some((input.button, held));
-        if held == Held::Sheet {
-            want(Intent::Take);
-            self.tap = Some(self.cursor);
-            self.click_at(self.cursor, now, want);
-        }
-    }
-
-    fn click_at(&mut self, at: Vec2, now: Duration, mut want: impl FnMut(Intent)) {
-        let double = self.click.is_some_and(|(then, place)| {
-            now.saturating_sub(then) <= DOUBLE && place.distance(at) <= NEAR_PX
-        });
-        self.click = (!double).then_some((now, at));
-        if double {
-            want(Intent::TrueSize { at: self.place(at) });
-        }
-    }
-
-    fn touch(&mut self, touch: &TouchInput, now: Duration, mut want: impl FnMut(Intent)) {
-        let known = self.fingers.iter().position(|(id, _)| *id == touch.id);
-        // Where a finger was lifted it goes on pointing.
-        self.pointer = Some(touch.position);
-        match (touch.phase, known) {
-            (TouchPhase::Started, None) => {
-                self.fingers.push((touch.id, touch.position));
-                want(Intent::Take);
-                self.tap = None;
-                if self.fingers.len() == 1 {
-                    self.tap = Some(touch.position);
-                    self.click_at(touch.position, now, want);
-                }
-            }
-            (TouchPhase::Moved, Some(finger)) => {
-                self.wander(touch.position);
-                let before = self.spread();
-                let from = std::mem::replace(&mut self.fingers[finger].1, touch.position);
-                match (before, self.spread()) {
-                    (Some((middle, apart)), Some((now_middle, now_apart))) if finger < 2 => {
-                        want(Intent::Pinch {
-                            from: self.place(middle),
-                            to: self.place(now_middle),
-                            factor: f64::from(now_apart / apart.max(1.0)),
-                        });
-                    }
-                    (None, None) if self.tap.is_none() => want(Intent::Drag {
-                        from: self.place(from),
-                        to: self.place(touch.position),
-                    }),
-                    _ => {}
-                }
-            }
-            (TouchPhase::Ended | TouchPhase::Canceled, Some(finger)) => {
-                self.fingers.remove(finger);
-                if !self.fingers.is_empty() {
-                    want(Intent::Take);
-                    return;
-                }
-                want(Intent::Release);
-                if touch.phase == TouchPhase::Ended {
-                    self.tapped(want);
+    /// Tells the staff's panel of what goes on in its corner.
+    pub fn watch_corner(&self, event: &WindowEvent, now: Duration, staff: &mut StaffPanel) {
+        let scale = self.touches.px_per_mm();
+        match event {
+            WindowEvent::TouchInput(touch) => match touch.phase {
+                TouchPhase::Started => staff.land(touch.id, touch.position, scale, now),
+                TouchPhase::Moved => {}
+                _ => staff.lift(touch.id, touch.position, scale, now),
+            },
+            WindowEvent::MouseButtonInput(button) if button.button == MouseButton::Left => {
+                match button.state {
+                    ButtonState::Pressed => staff.land(MOUSE, self.cursor, scale, now),
+                    ButtonState::Released => staff.lift(MOUSE, self.cursor, scale, now),
                 }
             }
             _ => {}
         }
     }
 
-    /// The middle between two fingers, and how far they are apart.
-    fn spread(&self) -> Option<(Vec2, f32)> {
-        match self.fingers[..] {
-            [(_, a), (_, b), ..] => Some(((a + b) / 2.0, a.distance(b))),
-            _ => None,
+    /// From logical pixels to −1…1, y up.
+    fn place(&self, at: Vec2) -> DVec2 {
+        place(self.size, at)
+    }
+
+    fn button(
+        &mut self,
+        input: &MouseButtonInput,
+        now: Duration,
+        ground: Ground,
+        want: impl FnMut(Wish),
+    ) {
+        let pressed = input.state == ButtonState::Pressed;
+        match input.button {
+            MouseButton::Left | MouseButton::Right if !pressed => {
+                if self.lamp == Some(input.button) {
+                    self.lamp = None;
+                } else if input.button == MouseButton::Left && self.pressed {
+                    self.pressed = false;
+                    self.lift(MOUSE, now, false, want);
+                }
+            }
+            // One button at a time.
+            _ if self.pressed || self.lamp.is_some() => {}
+            MouseButton::Left if !self.lamp_key => {
+                self.pressed = true;
+                self.land(MOUSE, self.cursor, now, ground, want);
+            }
+            MouseButton::Left | MouseButton::Right => self.lamp = Some(input.button),
+            _ => {}
+        }
+    }
+
+    fn touch(&mut self, touch: &TouchInput, now: Duration, ground: Ground, want: impl FnMut(Wish)) {
+        // Where a finger was lifted it goes on pointing.
+        self.pointer = Some(touch.position);
+        match touch.phase {
+            TouchPhase::Started => self.land(touch.id, touch.position, now, ground, want),
+            TouchPhase::Moved => self.go(touch.id, touch.position, now, want),
+            TouchPhase::Ended => self.lift(touch.id, now, false, want),
+            TouchPhase::Canceled => self.lift(touch.id, now, true, want),
+        }
+    }
+
+    fn land(
+        &mut self,
+        id: u64,
+        at: Vec2,
+        now: Duration,
+        ground: Ground,
+        mut want: impl FnMut(Wish),
+    ) {
+        // The end of one with the same number was lost.
+        self.lift(id, now, true, &mut want);
+        let owner = if let Some(widget) = ground.controls.at(at) {
+            Owner::Control(widget.control)
+        } else if ground.controls.covers(at) {
+            Owner::Nobody
+        } else if (ground.compare)(self.place(at)) {
+            Owner::Compare
+        } else {
+            let size = self.size;
+            let did = |did| want(Wish::Intent(intent(size, did)));
+            self.touches.land(id, at, now, did);
+            return;
+        };
+        let is_lost = |other: &mut Other| now.saturating_sub(other.heard) > LOST;
+        for other in self.others.extract_if(.., is_lost) {
+            other.tell(Phase::Lost, &mut want);
+        }
+        let other = Other {
+            id,
+            owner,
+            at,
+            heard: now,
+        };
+        self.others.push(other);
+        other.tell(Phase::Landed, &mut want);
+    }
+
+    fn go(&mut self, id: u64, to: Vec2, now: Duration, mut want: impl FnMut(Wish)) {
+        let size = self.size;
+        if let Some(other) = self.others.iter_mut().find(|other| other.id == id) {
+            let from = std::mem::replace(&mut other.at, to);
+            other.heard = now;
+            if other.owner == Owner::Compare {
+                want(Wish::Intent(Intent::MoveCompare {
+                    from: place(size, from),
+                    to: place(size, to),
+                }));
+            }
+            other.tell(Phase::Moved, &mut want);
+        } else {
+            let did = |did| want(Wish::Intent(intent(size, did)));
+            self.touches.go(id, to, now, did);
+        }
+    }
+
+    fn lift(&mut self, id: u64, now: Duration, cancelled: bool, mut want: impl FnMut(Wish)) {
+        if let Some(index) = self.others.iter().position(|other| other.id == id) {
+            let phase = match cancelled {
+                true => Phase::Lost,
+                false => Phase::Lifted,
+            };
+            self.others.remove(index).tell(phase, &mut want);
+        } else {
+            let size = self.size;
+            let did = |did| want(Wish::Intent(intent(size, did)));
+            self.touches.lift(id, now, cancelled, did);
         }
     }
 
@@ -285,7 +343,8 @@ impl Devices {
             Key::PageUp => Intent::StepScene(-1),
             Key::Home => Intent::Home,
             Key::Escape => Intent::Quit,
-            Key::Tab => Intent::StepHotspot(if self.shift { -1 } else { 1 }),
+            Key::Tab => Intent::StepFocus(if self.shift { -1 } else { 1 }),
+            Key::Space => Intent::Activate,
             Key::Enter => Intent::GoOn,
             Key::Backspace | Key::Delete => Intent::TakeBack,
             Key::F1 => Intent::Keys,
@@ -299,6 +358,8 @@ impl Devices {
                 "2" => Intent::RaiseLamp(OBLIQUE_DEG),
                 "3" => Intent::RaiseLamp(RAKING_DEG),
                 "i" => Intent::Hotspots,
+                "j" => Intent::StepHotspot(if self.shift { -1 } else { 1 }),
+                "u" => Intent::Controls,
                 "m" => Intent::StepTool(if self.shift { -1 } else { 1 }),
                 "v" => Intent::ReadOut,
                 "g" => Intent::StepCategory(if self.shift { -1 } else { 1 }),
@@ -330,6 +391,53 @@ impl Devices {
             },
             _ => return None,
         })
+    }
+}
+
+/// From logical pixels in a window of this size to −1…1, y up.
+fn place(size: Vec2, at: Vec2) -> DVec2 {
+    let part = (at / size.max(Vec2::ONE)).as_dvec2();
+    DVec2::new(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y)
+}
+
+/// What a gesture on the sheet is about.
+fn intent(size: Vec2, did: Gesture) -> Intent {
+    match did {
+        Gesture::Take => Intent::Take,
+        Gesture::Drag { from, to } => Intent::Drag {
+            from: place(size, from),
+            to: place(size, to),
+        },
+        Gesture::Pinch {
+            from,
+            to,
+            factor,
+            turn,
+        } => Intent::Pinch {
+            from: place(size, from),
+            to: place(size, to),
+            factor: factor.into(),
+            turn: turn.into(),
+        },
+        Gesture::Release => Intent::Release,
+        Gesture::Tap(at) => Intent::Tap(place(size, at)),
+        Gesture::DoubleTap(at) => Intent::TrueSize {
+            at: place(size, at),
+        },
+        Gesture::Sweep => Intent::Flip,
+    }
+}
+
+impl Other {
+    fn tell(self, phase: Phase, want: &mut impl FnMut(Wish)) {
+        if let Owner::Control(control) = self.owner {
+            want(Wish::Contact(Contact {
+                id: self.id,
+                control,
+                phase,
+                at: self.at,
+            }));
+        }
     }
 }
 
@@ -368,9 +476,18 @@ mod tests {
         let events = std::iter::once(button(ButtonState::Pressed))
             .chain(moves.iter().map(moved))
             .chain([button(ButtonState::Released)]);
+        let controls = Laid::default();
+        let ground = Ground {
+            controls: &controls,
+            compare: &|_| false,
+        };
         let mut wishes = Vec::new();
         for event in events {
-            devices.take(&event, Duration::ZERO, |intent| wishes.push(intent));
+            devices.take(&event, Duration::ZERO, ground, |wish| {
+                if let Wish::Intent(intent) = wish {
+                    wishes.push(intent);
+                }
+            });
         }
         wishes
     }

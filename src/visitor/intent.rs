@@ -3,6 +3,9 @@
 use bevy::prelude::Message;
 use glam::DVec2;
 
+use super::measuring::Kind;
+use crate::manifest::exhibit::CompareMode;
+
 /// A wish of the visitor. Places in the picture are −1…1 in both directions, y up.
 #[derive(Message, Clone, Copy, Debug, PartialEq)]
 pub enum Intent {
@@ -23,11 +26,13 @@ pub enum Intent {
         at: DVec2,
         factor: f64,
     },
-    /// Two fingers: what lies at `from` comes to `to`, magnified by `factor` about it.
+    /// Two fingers or more: what lies at `from` comes to `to`, magnified by `factor` and turned by `turn`
+    /// radians, anticlockwise, about it.
     Pinch {
         from: DVec2,
         to: DVec2,
         factor: f64,
+        turn: f64,
     },
     /// To true size about the place `at`, and back.
     TrueSize {
@@ -42,6 +47,43 @@ pub enum Intent {
     MoveLamp(DVec2),
     /// Brings the lamp to this height, in degrees above the sheet, from where it stands.
     RaiseLamp(f64),
+    /// Brings the lamp to this place over the hemisphere as seen from above, of its radius.
+    LampTo(DVec2),
+    /// Another set-up of the lamp, in degrees: its height, and where it stands as seen,
+    /// anticlockwise from the right.
+    SetLamp {
+        elevation_deg: f64,
+        azimuth_deg: f64,
+    },
+    /// The lamp's colour, in kelvin.
+    Warmth(f64),
+    /// The lamp's light, as a factor of what is written.
+    Intensity(f64),
+    /// This share of the light comes through the sheet.
+    TransmitTo(f64),
+    /// All of the light comes through the sheet, or again as much as the scene says.
+    SwitchTable,
+    /// To the scene with this index.
+    GoTo(usize),
+    /// This comparison, or none.
+    Compare(Option<CompareMode>),
+    /// The curtain's place, or the share of a blend, 0…1.
+    CompareTo(f64),
+    /// The curtain or the loupe goes with a finger from one place to the other.
+    MoveCompare {
+        from: DVec2,
+        to: DVec2,
+    },
+    /// Lays the overlay with this index on the sheet, or takes it away.
+    Overlay(usize),
+    /// This opacity of the overlays that are on.
+    OpacityTo(f64),
+    /// Takes this tool, or puts it away.
+    Tool(Option<Kind>),
+    /// The next control (1) or the one before (−1) is the one that keys are about.
+    StepFocus(i32),
+    /// Touches that control.
+    Activate,
     /// To another state of conservation, forwards (1) or back (−1).
     StepState(i32),
     /// None, each overlay of the side, all of them.
@@ -95,6 +137,8 @@ pub enum Intent {
     SaveView,
     /// Prints a link to the view.
     Link,
+    /// Shows or hides the controls.
+    Controls,
     /// Shows or hides the caption.
     Caption,
     /// Shows or hides the list of keys.
@@ -105,11 +149,35 @@ pub enum Intent {
 }
 
 impl Intent {
+    /// Whether it is none of a visitor's business on a public wall: the curator's files, and the window.
+    pub fn leads_out(self) -> bool {
+        matches!(
+            self,
+            Self::Fullscreen
+                | Self::SaveView
+                | Self::Link
+                | Self::Export { .. }
+                | Self::StepTier(_)
+                | Self::Keys
+                | Self::Controls
+        )
+    }
+
     /// Whether more of the same is likely to follow at once.
     pub fn is_motion(self) -> bool {
         matches!(
             self,
-            Self::Drag { .. } | Self::Pinch { .. } | Self::Zoom { .. } | Self::MoveLamp(_)
+            Self::Drag { .. }
+                | Self::Pinch { .. }
+                | Self::Zoom { .. }
+                | Self::MoveLamp(_)
+                | Self::LampTo(_)
+                | Self::Warmth(_)
+                | Self::Intensity(_)
+                | Self::TransmitTo(_)
+                | Self::CompareTo(_)
+                | Self::MoveCompare { .. }
+                | Self::OpacityTo(_)
         )
     }
 }

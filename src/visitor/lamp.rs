@@ -99,8 +99,7 @@ impl LampPlace {
     /// Moved over the hemisphere as seen from above, by parts of its radius: whichever way the
     /// hand goes, the lamp goes.
     pub fn moved(self, by: DVec2) -> Self {
-        let (sin, cos) = self.azimuth_deg.to_radians().sin_cos();
-        let seen = DVec2::new(cos, sin) * self.elevation_deg.to_radians().cos() + by;
+        let seen = self.seen() + by;
         let radius = seen.length().min(LOWEST_DEG.to_radians().cos());
         Self {
             elevation_deg: radius.acos().to_degrees(),
@@ -112,6 +111,24 @@ impl LampPlace {
         }
     }
 
+    /// Its place over the hemisphere as seen from above, of its radius.
+    pub fn seen(self) -> DVec2 {
+        DVec2::from_angle(self.azimuth_deg.to_radians()) * self.elevation_deg.to_radians().cos()
+    }
+
+    /// At this place over the hemisphere as seen from above.
+    pub fn to(self, seen: DVec2) -> Self {
+        self.moved(seen - self.seen())
+    }
+
+    /// At this azimuth, in degrees.
+    pub fn towards_deg(self, azimuth_deg: f64) -> Self {
+        Self {
+            azimuth_deg: azimuth_deg.rem_euclid(360.0),
+            ..self
+        }
+    }
+
     /// Raised or lowered to `elevation_deg`.
     pub fn raised(self, elevation_deg: f64) -> Self {
         Self {
@@ -120,28 +137,20 @@ impl LampPlace {
         }
     }
 
-    /// For the caption.
-    pub fn words(self) -> String {
+    /// Which of eight directions it shines from, as wordings call it; none from straight above.
+    pub fn sector(self) -> Option<&'static str> {
         const FROM: [&str; 8] = [
-            "the right",
-            "the upper right",
-            "the top",
-            "the upper left",
-            "the left",
-            "the lower left",
-            "the bottom",
-            "the lower right",
+            "right",
+            "upper-right",
+            "top",
+            "upper-left",
+            "left",
+            "lower-left",
+            "bottom",
+            "lower-right",
         ];
-        if self.elevation_deg >= OVERHEAD_DEG {
-            return "lamp overhead".into();
-        }
         let sector = (self.azimuth_deg / 45.0).round() as usize % FROM.len();
-        format!(
-            "lamp {:.0}° high, from {} ({:.0}°)",
-            self.elevation_deg,
-            FROM[sector],
-            self.azimuth_deg.round() % 360.0
-        )
+        (self.elevation_deg < OVERHEAD_DEG).then_some(FROM[sector])
     }
 }
 
@@ -173,11 +182,8 @@ mod tests {
     #[test]
     fn overhead_keeps_the_direction_to_come_back_from() {
         let overhead = raking().raised(90.0);
-        assert_eq!(overhead.words(), "lamp overhead");
-        assert_eq!(
-            overhead.raised(12.0).words(),
-            "lamp 12° high, from the left (180°)"
-        );
+        assert_eq!(overhead.sector(), None);
+        assert_eq!(overhead.raised(12.0).sector(), Some("left"));
     }
 
     #[test]

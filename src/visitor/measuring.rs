@@ -29,7 +29,7 @@ pub enum Kind {
 
 impl Kind {
     /// In the order in which a key goes through them.
-    const ALL: [Self; 9] = [
+    pub const ALL: [Self; 9] = [
         Self::Ruler,
         Self::Path,
         Self::Area,
@@ -197,6 +197,13 @@ impl Measuring {
             .and_then(|kind| Kind::ALL.iter().position(|k| *k == kind));
         let next = wrapped(place.map_or(0, |place| place + 1), by, Kind::ALL.len() + 1);
         self.kind = next.checked_sub(1).map(|index| Kind::ALL[index]);
+        self.laying = None;
+        self.ended = false;
+    }
+
+    /// Takes this tool in the hand, or none.
+    pub fn take(&mut self, kind: Option<Kind>) {
+        self.kind = kind;
         self.laying = None;
         self.ended = false;
     }

@@ -2,7 +2,8 @@
 //!
 //! | step | where |
 //! |---|---|
-//! | events of mouse, keys and fingers → [`Intent`] | `input` |
+//! | events of mouse and keys → [`Intent`], contacts with [`controls`] | `input` |
+//! | fingers, palms and sleeves → gestures | `touches` |
 //! | [`Intent`] and time → [`Hand`] | [`hand`], `view`, `lamp`, `motion` |
 //! | [`Hand`] → [`crate::stage::Shown`] | [`Hand::shown`] |
 //! | comparisons in the hand | `comparing` |
@@ -13,12 +14,18 @@
 //! | lines and words that lie on the sheet | `marks` |
 //! | the view as a figure, and what was measured as a table | `export` |
 //! | texts | `caption` |
+//! | while nobody is there | `attract` |
+//! | what only the staff gets at | `staff` |
+//! | what a resting window is woken for | `alarm` |
 //! | which tier serves what is shown | `foresight` |
 //! | the window, and its rest | `window` |
 
+mod alarm;
+mod attract;
 mod board;
 mod caption;
 mod comparing;
+pub mod controls;
 mod display;
 mod export;
 mod foresight;
@@ -32,7 +39,9 @@ mod measuring;
 mod motion;
 mod reader;
 mod saving;
+mod staff;
 mod tools;
+mod touches;
 mod view;
 mod window;
 
@@ -41,11 +50,14 @@ use std::{
     sync::Arc,
 };
 
+pub use attract::{Attract, Doing, Waits};
 pub use caption::KEYS;
 pub use display::NoDisplay;
 pub use hand::{Hand, Serving};
 pub use intent::Intent;
 pub use lamp::{LOWEST_DEG, LampPlace};
+pub use measuring::Kind;
+pub use window::VisitorPlugin;
 
 use crate::{
     device::{self, NoDevice},
@@ -70,6 +82,28 @@ pub struct ShowOptions {
     pub fullscreen: bool,
     /// Where figures are exported to; without it, the folder that the program was started in.
     pub export: Option<PathBuf>,
+    pub manners: Manners,
+}
+
+/// How the picture behaves towards those who stand before it.
+#[derive(Clone, Debug, Default)]
+pub struct Manners {
+    /// For a public wall: no key and no gesture leads out of it.
+    pub kiosk: bool,
+    /// Without them, nothing happens while nobody is there.
+    pub waits: Option<Waits>,
+    /// Tags of the languages on offer, the first of which is spoken at home; without any, those of the
+    /// exhibit.
+    pub languages: Vec<String>,
+    /// What everybody reaches, from the picture's top, as shares of its height.
+    pub reach: Option<[f64; 2]>,
+    /// The staff's; without one there is no panel.
+    pub pin: Option<String>,
+    pub enlarge: bool,
+    pub contrast: bool,
+    pub calm: bool,
+    /// A control after the other is pointed out, each for so many seconds, for those who press one switch.
+    pub scan_s: Option<f64>,
 }
 
 /// Why there is no window.

@@ -136,6 +136,7 @@ pub fn follow(
                 measuring.step(by);
                 texts.notice = None;
             }
+            Intent::Tool(kind) => measuring.take(kind),
             Intent::TakeBack => measuring.take_back(),
             Intent::Home => measuring.clear(),
             Intent::ReadOut => {

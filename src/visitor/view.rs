@@ -6,8 +6,10 @@ use glam::DVec2;
 
 use super::{comparing, intent::Intent, lamp::LampPlace};
 use crate::manifest::exhibit::{
-    Camera, Comparison, Drawing, Enhancement, Exhibit, MAX_OVERLAYS, OverlayKind, Scene, SideName,
+    Camera, Comparison, Drawing, Enhancement, Exhibit, LampColour, MAX_OVERLAYS, OverlayKind,
+    Scene, SideName,
 };
+use crate::units::Kelvin;
 
 /// Opacity of an overlay that the scene does not mention.
 const OPACITY: f64 = 0.7;
@@ -30,6 +32,24 @@ struct Layer {
     on: bool,
 }
 
+/// The light of the lamp in the hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glow {
+    /// Its colour, where the hand changed it.
+    pub kelvin: Option<f64>,
+    /// Factor of what is written.
+    pub gain: f64,
+}
+
+impl Default for Glow {
+    fn default() -> Self {
+        Self {
+            kelvin: None,
+            gain: 1.0,
+        }
+    }
+}
+
 /// The changeable part of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
@@ -43,6 +63,7 @@ pub struct View {
     pub categories: BTreeMap<usize, Vec<usize>>,
     /// Of the first lamp that can be moved.
     pub lamp: Option<LampPlace>,
+    pub glow: Glow,
     pub compare: Option<Comparison>,
     pub enhance: Enhancement,
     /// Share of the light that comes through the sheet.
@@ -78,6 +99,7 @@ impl View {
             layers,
             categories: scene.categories.clone(),
             lamp: movable_lamp(exhibit, scene).and_then(|lamp| LampPlace::of(&exhibit.lamps[lamp])),
+            glow: Glow::default(),
             compare: scene.compare.clone(),
             enhance: scene.enhance,
             transmitted: scene.transmitted,
@@ -127,6 +149,7 @@ impl View {
         if self.lamp != written.lamp && view.lamp.is_some() {
             view.lamp = self.lamp;
         }
+        view.glow = self.glow;
         // What is compared is known by its place: it is kept where the places are the same.
         let at_first = |view: &Self| {
             let mut compare = view.compare.clone();
@@ -164,6 +187,24 @@ impl View {
                 self.step_overlay(drawing);
             }
             Intent::Opacity(by) => self.fade(by),
+            Intent::OpacityTo(opacity) => {
+                for layer in self.layers.iter_mut().filter(|layer| layer.on) {
+                    layer.opacity = opacity.clamp(FAINTEST, 1.0);
+                }
+            }
+            Intent::Overlay(overlay) => {
+                let mut mine = self.layers.iter_mut();
+                if let Some(layer) = mine.find(|layer| layer.overlay == overlay) {
+                    layer.on = !layer.on;
+                    layer.opacity = layer.opacity.max(FAINTEST);
+                }
+            }
+            Intent::TransmitTo(share) => self.transmitted = share.clamp(0.0, 1.0),
+            Intent::CompareTo(at) => {
+                if let Some(comparison) = &mut self.compare {
+                    comparison.at = at.clamp(0.0, 1.0);
+                }
+            }
             Intent::StepCategory(by) => self.step_category(drawing, by),
             Intent::ShiftCompare(by) => {
                 if let Some(comparison) = &mut self.compare {
@@ -216,6 +257,17 @@ impl View {
             && compared(self) == compared(other)
             && self.enhance.relief_only == other.enhance.relief_only
             && (self.transmitted > 0.0) == (other.transmitted > 0.0)
+    }
+
+    /// Every overlay of this side, by its place in the drawing, and its opacity where it is on.
+    pub fn layers(&self, drawing: &Drawing) -> Vec<(usize, Option<f64>)> {
+        let mine = self.layers.iter();
+        let mine = mine.filter(|layer| drawing.overlays[layer.overlay].side == self.side);
+        let mut mine: Vec<_> = mine
+            .map(|layer| (layer.overlay, layer.on.then_some(layer.opacity)))
+            .collect();
+        mine.sort_by_key(|(overlay, _)| *overlay);
+        mine
     }
 
     /// The overlays that lie on `side`, from the lowest.
@@ -297,9 +349,17 @@ impl View {
     /// The exhibit with the scene's lamp where the hand put it.
     pub fn lit(&self, exhibit: &Arc<Exhibit>, scene: &Scene) -> Arc<Exhibit> {
         match (movable_lamp(exhibit, scene), self.lamp) {
-            (Some(lamp), Some(place)) if LampPlace::of(&exhibit.lamps[lamp]) != self.lamp => {
+            (Some(lamp), Some(place))
+                if LampPlace::of(&exhibit.lamps[lamp]) != self.lamp
+                    || self.glow != Glow::default() =>
+            {
                 let mut lit = Exhibit::clone(exhibit);
-                place.put(&mut lit.lamps[lamp]);
+                let lamp = &mut lit.lamps[lamp];
+                place.put(lamp);
+                if let Some(kelvin) = self.glow.kelvin {
+                    lamp.colour = LampColour::Temperature(Kelvin(kelvin));
+                }
+                lamp.kind.dim(self.glow.gain);
                 Arc::new(lit)
             }
             _ => exhibit.clone(),
@@ -321,7 +381,7 @@ pub fn wrapped(place: usize, by: i32, count: usize) -> usize {
 }
 
 /// Index of the scene's first lamp that a hand can move.
-fn movable_lamp(exhibit: &Exhibit, scene: &Scene) -> Option<usize> {
+pub fn movable_lamp(exhibit: &Exhibit, scene: &Scene) -> Option<usize> {
     let movable = |lamp: &usize| LampPlace::of(&exhibit.lamps[*lamp]).is_some();
     scene.lamps.iter().copied().find(movable)
 }

@@ -24,22 +24,34 @@ use bevy::{
     winit::{EventLoopProxyWrapper, UpdateMode, WinitSettings, WinitUserEvent},
 };
 
+use glam::DVec2;
 use wgpu::DeviceType;
 
 use super::{
-    NoDisplay, ShowOptions, board,
+    Manners, NoDisplay, ShowOptions,
+    alarm::Alarm,
+    attract::{Attract, Due, Touched},
+    board,
     caption::{self, Texts},
     comparing,
+    controls::{
+        Contact, Interface, Reading, Staff,
+        draw::{self, Controls, Languages, ProgramWords, Reach},
+        icons::Icons,
+        operate::{self, Asked},
+        thumbs::{self, Thumbs},
+    },
     export::{self, Exports},
     foresight::{Foresight, Observed, foresee},
     hand::{Hand, Picture, Retreat},
     hotspots,
-    input::Devices,
+    input::{Devices, Ground, Wish},
     intent::Intent,
     marks::{self, Marks, Shape},
     measuring::Measuring,
     reader::Reader,
     saving::{self, Saved},
+    staff::StaffPanel,
     tools::{self, Pointer},
 };
 use crate::{
@@ -73,6 +85,10 @@ const SLOW: f64 = 1.25;
 const PAUSE: Duration = Duration::from_millis(400);
 /// Between two looks at whether the first maps have arrived.
 const LOADING_PAUSE: Duration = Duration::from_millis(30);
+/// A public wall that rests draws a frame as often as this, to show that it could.
+const HEARTBEAT: Duration = Duration::from_secs(60);
+/// The exit code by which the staff asks whoever supervises for a new start.
+const RESTART: u8 = 75;
 /// Writes the number of frames drawn into this file, for tests.
 const FRAME_LOG: &str = "RECTO_FRAME_LOG";
 /// How often.
@@ -99,76 +115,128 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         width_mm: width * MM_PER_INCH / PPI,
         measured: false,
     };
-    let calm = std::env::var_os(REDUCED_MOTION).is_some_and(|set| !set.is_empty() && set != "0");
+    let asked = std::env::var_os(REDUCED_MOTION).is_some_and(|set| !set.is_empty() && set != "0");
+    let mut manners = options.manners.clone();
+    manners.calm |= asked;
     let tier = options.tier.unwrap_or_default();
-    let mut hand = Hand::new(exhibit.clone(), scene, tier, picture, calm);
+    let mut hand = Hand::new(exhibit.clone(), scene, tier, picture, manners.calm);
     if options.tier.is_none() {
         hand.leave_tier_free();
     }
-    app.insert_resource(Waker(Arc::new(wake)))
-        .insert_resource(WinitSettings::continuous())
-        .insert_resource(DisplayMm(options.display_mm))
-        .insert_resource(hand.shown())
-        .insert_resource(hand)
-        .init_resource::<Devices>()
-        .init_resource::<Texts>()
-        .init_resource::<Saved>()
-        .init_resource::<Pace>()
-        .init_resource::<Foresight>()
-        .init_resource::<Shape>()
-        .init_resource::<Marks>()
-        .init_resource::<Measuring>()
-        .init_resource::<Pointer>()
-        .init_resource::<Reader>()
-        .insert_resource(Exports::into(options.export.clone()))
-        .insert_resource(PictureSize(UVec2::ONE))
-        .add_message::<Intent>()
+    let waker = Waker(Arc::new(wake));
+    app.insert_resource(Alarm::new(waker.clone()))
+        .insert_resource(waker)
         .add_plugins((
             StagePlugin {
                 display: true,
                 anisotropy: ANISOTROPY,
             },
             ReloadPlugin { exhibit },
+            VisitorPlugin {
+                hand,
+                display_mm: options.display_mm,
+                export: options.export.clone(),
+                manners,
+            },
         ))
         .add_observer(outlive_display)
-        .add_systems(Startup, (without_clusters, suit_device, set_up))
-        .add_systems(
-            Update,
-            (
-                (
-                    take_in_reread,
-                    measure,
-                    read_devices,
-                    steer,
-                    tools::follow,
-                    follow_wishes,
-                    saving::keep,
-                    export::export,
-                )
-                    .chain()
-                    .in_set(StageSet::Steer),
-                (
-                    fall_back,
-                    foresee,
-                    marks::learn,
-                    comparing::lay,
-                    hotspots::lay,
-                    tools::hear,
-                    tools::point,
-                    tools::lay,
-                    marks::draw,
-                    board::write,
-                    caption::draw,
-                    rest,
-                )
-                    .chain()
-                    .after(StageSet::Arrange),
-            ),
-        );
+        .add_systems(Startup, (without_clusters, suit_device, set_up));
     count_frames(&mut app);
     match app.run() {
         AppExit::Success => Ok(0),
         AppExit::Error(code) => Ok(code.get()),
+    }
+}
+
+/// Whoever is at the picture: takes in what the devices of its window report, and changes what is
+/// shown. It needs the stage, a camera for the texts, and somebody who reports.
+pub struct VisitorPlugin {
+    pub hand: Hand,
+    /// As in [`ShowOptions`].
+    pub display_mm: Option<[f64; 2]>,
+    pub export: Option<PathBuf>,
+    pub manners: Manners,
+}
+
+impl Plugin for VisitorPlugin {
+    fn build(&self, app: &mut App) {
+        let manners = &self.manners;
+        let languages = Languages {
+            installed: manners.languages.clone(),
+            ..default()
+        };
+        let home = Reading {
+            text: usize::from(manners.enlarge),
+            contrast: manners.contrast,
+            calm: manners.calm,
+        };
+        let mut hand = self.hand.clone();
+        if let [first, ..] = &manners.languages[..] {
+            hand.speak(Some(first.clone()));
+        }
+        app.insert_resource(WinitSettings::continuous())
+            .insert_resource(DisplayMm(self.display_mm))
+            .insert_resource(hand.shown())
+            .insert_resource(hand)
+            .insert_resource(Interface::new(true, home))
+            .insert_resource(Attract::new(manners.waits))
+            .insert_resource(StaffPanel::new(manners.pin.clone()))
+            .insert_resource(House(manners.clone()))
+            .insert_resource(languages)
+            .init_resource::<ProgramWords>()
+            .init_resource::<Reach>()
+            .init_resource::<Controls>()
+            .init_resource::<Icons>()
+            .init_resource::<Thumbs>()
+            .add_message::<Contact>()
+            .add_message::<Asked>()
+            .init_resource::<Devices>()
+            .init_resource::<Texts>()
+            .init_resource::<Saved>()
+            .init_resource::<Pace>()
+            .init_resource::<Foresight>()
+            .init_resource::<Shape>()
+            .init_resource::<Marks>()
+            .init_resource::<Measuring>()
+            .init_resource::<Pointer>()
+            .init_resource::<Reader>()
+            .insert_resource(Exports::into(self.export.clone()))
+            .insert_resource(PictureSize(UVec2::ONE))
+            .add_message::<Intent>()
+            .add_message::<Reread>()
+            .add_systems(
+                Update,
+                (
+                    (
+                        take_in_reread,
+                        measure,
+                        attend,
+                        read_devices,
+                        operate::operate,
+                        serve_staff,
+                        steer,
+                        tools::follow,
+                        follow_wishes,
+                        saving::keep,
+                        export::export,
+                    )
+                        .chain()
+                        .in_set(StageSet::Steer),
+                    (
+                        (fall_back, foresee, marks::learn).chain(),
+                        (comparing::lay, hotspots::lay).chain(),
+                        (tools::hear, tools::point, tools::lay).chain(),
+                        marks::draw,
+                        draw::arrange,
+                        board::write,
+                        caption::draw,
+                        (thumbs::gather, draw::draw).chain(),
+                        rest,
+                    )
+                        .chain()
+                        .after(StageSet::Arrange),
+                ),
+            );
     }
 }
 
@@ -235,7 +303,14 @@ fn suit_device(adapter: Res<RenderAdapterInfo>, mut library: ResMut<Library>) {
 }
 
 fn set_up(mut commands: Commands) {
-    commands.spawn((PictureCamera, camera_bundle(0), TextCamera { height: 1.0 }));
+    commands.spawn((
+        PictureCamera,
+        camera_bundle(0),
+        TextCamera {
+            height: 1.0,
+            foot: 0.0,
+        },
+    ));
 }
 
 /// A display that is switched off would take its windows with it.
@@ -277,7 +352,7 @@ fn measure(
     mut hand: ResMut<Hand>,
     mut devices: ResMut<Devices>,
     mut texts: Query<&mut TextCamera>,
-    mut picture_size: ResMut<PictureSize>,
+    (mut picture_size, mut reach, house): (ResMut<PictureSize>, ResMut<Reach>, Res<House>),
 ) {
     let Ok((window, monitor)) = windows.single() else {
         return;
@@ -286,7 +361,6 @@ fn measure(
     if size.min_element() < 1.0 {
         return;
     }
-    devices.resize(size);
     picture_size.0 = window.physical_size();
     for mut text in &mut texts {
         if text.height != size.y {
@@ -298,24 +372,126 @@ fn measure(
     let measured = display_mm.0.zip(monitor).map(|([width, _], monitor)| {
         f64::from(pixels) * width / f64::from(monitor.physical_width.max(1))
     });
+    let width_mm = measured.unwrap_or(f64::from(size.x) * MM_PER_INCH / PPI);
+    devices.resize(size, size.x / width_mm.max(1.0) as f32);
+    reach.0 = house
+        .0
+        .reach
+        .map(|shares| shares.map(|share| share as f32 * size.y));
     hand.resize(Picture {
         aspect: f64::from(size.x) / f64::from(size.y),
-        width_mm: measured.unwrap_or(f64::from(size.x) * MM_PER_INCH / PPI),
+        width_mm,
         measured: measured.is_some(),
     });
+}
+
+/// The manners of the house.
+#[derive(Resource)]
+struct House(Manners);
+
+/// Sees whether somebody is there; goes home and tours while nobody is.
+fn attend(
+    time: Res<Time<Real>>,
+    (arranged, measuring, controls): (Res<Arranged>, Res<Measuring>, Res<Controls>),
+    mut attract: ResMut<Attract>,
+    (mut hand, mut interface): (ResMut<Hand>, ResMut<Interface>),
+    (languages, devices, mut staff): (Res<Languages>, Res<Devices>, ResMut<StaffPanel>),
+    (house, mut scan): (Res<House>, Local<f64>),
+    mut intents: MessageWriter<Intent>,
+) {
+    staff.bypass_change_detection().pass(time.elapsed());
+    // Nobody waits for a picture that is not there yet.
+    let busy =
+        !arranged.is_settled() || devices.is_held(time.elapsed()) || measuring.laying().is_some();
+    let stops = super::hand::stops(hand.exhibit());
+    let seconds: Vec<f64> = stops.iter().map(|(_, seconds)| *seconds).collect();
+    let due = attract
+        .bypass_change_detection()
+        .advance(time.delta_secs_f64(), busy, &seconds);
+    for due in due {
+        match due {
+            Due::Home => {
+                interface.go_home();
+                intents.write(Intent::Home);
+                hand.go_home(languages.spoken(0));
+            }
+            Due::Stop(stop) => {
+                if let Some((scene, _)) = stops.get(stop) {
+                    hand.stop_at(*scene);
+                }
+            }
+        }
+    }
+    if let Some(period) = house.0.scan_s.filter(|_| !controls.laid.widgets.is_empty()) {
+        *scan += time.delta_secs_f64();
+        if *scan >= period {
+            *scan = 0.0;
+            intents.write(Intent::StepFocus(1));
+        }
+    }
+}
+
+/// Follows what the staff asked for, and the countdown's refusal.
+fn serve_staff(
+    mut asked: MessageReader<Asked>,
+    mut staff: ResMut<StaffPanel>,
+    mut exit: MessageWriter<AppExit>,
+) {
+    for asked in asked.read() {
+        match asked {
+            Asked::Digit(digit) => staff.digit(*digit),
+            Asked::Staff(wish) => match staff.ask(*wish) {
+                Some(Staff::Quit) => drop(exit.write(AppExit::Success)),
+                Some(Staff::Restart) => drop(exit.write(AppExit::from_code(RESTART))),
+                // These are the wall's, which hears of them as well.
+                _ => {}
+            },
+            // The touch itself has said so.
+            Asked::Stay => {}
+        }
+    }
 }
 
 fn read_devices(
     mut events: MessageReader<WindowEvent>,
     mut devices: ResMut<Devices>,
     time: Res<Time<Real>>,
-    mut intents: MessageWriter<Intent>,
+    (controls, shown, house): (Res<Controls>, Res<Shown>, Res<House>),
+    (mut attract, mut staff, mut hand): (ResMut<Attract>, ResMut<StaffPanel>, ResMut<Hand>),
+    (mut intents, mut contacts): (MessageWriter<Intent>, MessageWriter<Contact>),
 ) {
+    let now = time.elapsed();
+    let taken = |at: DVec2| {
+        let compare = shown.scene.compare.as_ref();
+        compare.is_some_and(|comparison| comparison.is_taken_at(at, shown.aspect))
+    };
+    let ground = Ground {
+        controls: &controls.laid,
+        compare: &taken,
+    };
     for event in events.read() {
-        devices.take(event, time.elapsed(), |intent| {
-            intents.write(intent);
+        if is_touch(event) && attract.touch() != Touched::GoesOn {
+            hand.end_tour();
+        }
+        let staff = staff.bypass_change_detection();
+        devices.watch_corner(event, now, staff);
+        devices.take(event, now, ground, |wish| match wish {
+            Wish::Intent(intent) if house.0.kiosk && intent.leads_out() => {}
+            Wish::Intent(intent) => drop(intents.write(intent)),
+            Wish::Contact(contact) => drop(contacts.write(contact)),
         });
     }
+}
+
+/// Whether somebody does something, and not a mouse that trembles by itself.
+fn is_touch(event: &WindowEvent) -> bool {
+    matches!(
+        event,
+        WindowEvent::TouchInput(_)
+            | WindowEvent::MouseButtonInput(_)
+            | WindowEvent::MouseWheel(_)
+            | WindowEvent::KeyboardInput(_)
+    )
 }
 
 /// Moves the hand, and shows what changed.
@@ -324,14 +500,18 @@ fn steer(
     (mut hand, measuring): (ResMut<Hand>, Res<Measuring>),
     time: Res<Time<Real>>,
     (arranged, foresight, mut pace): (Res<Arranged>, Res<Foresight>, ResMut<Pace>),
+    (interface, controls): (Res<Interface>, Res<Controls>),
     mut shown: ResMut<Shown>,
 ) {
+    let arrows_are_taken = operate::takes_arrows(&interface, &controls);
     let serving = foresight.serving(&shown.exhibit, hand.wanted(), pace.observed);
     hand.bypass_change_detection().serve(serving);
     hand.advance(time.delta_secs_f64(), arranged.is_settled());
     let mut moving = hand.is_moving();
     for intent in intents.read() {
-        if tools::is_for_tool(&measuring, *intent) {
+        if tools::is_for_tool(&measuring, *intent)
+            || arrows_are_taken && matches!(intent, Intent::Pan(_))
+        {
             continue;
         }
         hand.apply(*intent);
@@ -363,6 +543,7 @@ fn follow_wishes(
     mut intents: MessageReader<Intent>,
     mut closed: MessageReader<WindowCloseRequested>,
     (mut hand, mut measuring, mut texts): (ResMut<Hand>, ResMut<Measuring>, ResMut<Texts>),
+    (mut interface, house): (ResMut<Interface>, Res<House>),
     mut windows: Query<&mut Window, With<PrimaryWindow>>,
     mut exit: MessageWriter<AppExit>,
 ) {
@@ -380,11 +561,16 @@ fn follow_wishes(
                 measuring.set_changed();
             }
             Intent::Quit if hand.bypass_change_detection().close_hotspot() => texts.set_changed(),
+            Intent::Quit if !interface.open.is_empty() || interface.focus.is_some() => {
+                interface.open.clear();
+                interface.focus = None;
+            }
+            Intent::Quit if house.0.kiosk => {}
             Intent::Quit => drop(exit.write(AppExit::Success)),
             _ => {}
         }
     }
-    if closed.read().next().is_some() {
+    if closed.read().next().is_some() && !house.0.kiosk {
         exit.write(AppExit::Success);
     }
 }
@@ -441,7 +627,9 @@ struct Pace {
 
 /// Draws on while something moves or is on its way, and then not at all.
 fn rest(
-    (shown, texts): (Res<Shown>, Res<Texts>),
+    (shown, texts, controls): (Res<Shown>, Res<Texts>, Res<Controls>),
+    (interface, thumbs, attract): (Res<Interface>, Res<Thumbs>, Res<Attract>),
+    (staff, house, alarm): (Res<StaffPanel>, Res<House>, Option<Res<Alarm>>),
     (arranged, library, composite): (Res<Arranged>, Res<Library>, Res<Composite>),
     time: Res<Time<Real>>,
     mut hand: ResMut<Hand>,
@@ -462,7 +650,13 @@ fn rest(
     pace.left = pace.left.saturating_sub(1);
     if (!settled && !pace.stuck) || arranged.is_fresh() || composite.is_fresh() {
         pace.left = SETTLING_FRAMES;
-    } else if shown.is_changed() || texts.is_changed() || hand.is_moving() {
+    } else if shown.is_changed()
+        || texts.is_changed()
+        || controls.is_changed()
+        || interface.is_changed()
+        || thumbs.is_changed()
+        || hand.is_moving()
+    {
         pace.left = pace.left.max(CHANGE_FRAMES);
     } else if pace.left == 0 && hand.is_hurried() {
         // At rest, the picture refines; a hand that only pauses does not wait for that.
@@ -489,6 +683,15 @@ fn rest(
     if settings.focused_mode != mode {
         settings.focused_mode = mode;
         settings.unfocused_mode = mode;
+    }
+    if let Some(alarm) = alarm {
+        let due = [
+            attract.next_s().map(Duration::from_secs_f64),
+            staff.next(),
+            house.0.scan_s.map(Duration::from_secs_f64),
+            house.0.kiosk.then_some(HEARTBEAT),
+        ];
+        alarm.set(due.into_iter().flatten().min());
     }
 }
 

@@ -12,6 +12,7 @@ use crate::manifest::{
     eye::Eye,
     frames::other_side,
 };
+use crate::units::Degrees;
 
 /// Degrees by which the sheet turns when a hand crosses half the picture.
 const TURN_DEG: f64 = 70.0;
@@ -21,6 +22,9 @@ const STEEP_DEG: f64 = 75.0;
 const NARROWEST_MM: f64 = 2.0;
 /// A picture narrower than the whole sheet by this factor is zoomed in.
 const ZOOMED: f64 = 0.85;
+
+/// A picture that is let go of within so many degrees of upright is set upright.
+const NEARLY_STRAIGHT_DEG: f64 = 8.0;
 
 /// How a hand holds one of the sheets that share a picture.
 struct Hold {
@@ -191,6 +195,37 @@ impl Hand {
         self.set_camera(camera);
         if let (Some(before), Some(after)) = (before, self.table_point(at, &hold)) {
             self.move_centre((before - after) * hold.mirror);
+        }
+    }
+
+    /// Turns the picture by `turn` radians, anticlockwise, about what lies at `at`.
+    pub(super) fn turn_picture(&mut self, turn: f64, at: DVec2) {
+        if turn == 0.0 || !turn.is_finite() {
+            return;
+        }
+        let hold = self.hold(at);
+        let before = self.table_point(at, &hold);
+        let mut camera = self.camera();
+        // The camera goes the other way round than the sheet that it sees.
+        let turned = camera.turn.0 - turn.to_degrees();
+        camera.turn = Degrees((turned + 180.0).rem_euclid(360.0) - 180.0);
+        self.set_camera(camera);
+        if let (Some(before), Some(after)) = (before, self.table_point(at, &hold)) {
+            self.move_centre((before - after) * hold.mirror);
+        }
+    }
+
+    /// A picture that is nearly straight comes to be so.
+    pub(super) fn straighten(&mut self) {
+        let turn = self.view.camera.turn.0;
+        let written = self.written().camera.turn.0;
+        let straight = ((turn - written) / 90.0).round() * 90.0 + written;
+        if turn != straight && (turn - straight).abs() <= NEARLY_STRAIGHT_DEG {
+            if self.calm {
+                self.view.camera.turn = Degrees(straight);
+            } else {
+                self.straight = Some(straight);
+            }
         }
     }
 

@@ -2,6 +2,9 @@
 //! shown of it. No device, window or engine is needed to move it.
 
 mod carrying;
+mod touring;
+
+pub use touring::stops;
 
 use std::{collections::BTreeSet, f64::consts::PI, sync::Arc};
 
@@ -14,11 +17,11 @@ use super::{
     intent::Intent,
     lamp::LampPlace,
     motion::{self, Speed},
-    view::{View, wrapped},
+    view::{Glow, View, movable_lamp, wrapped},
 };
 use crate::{
     manifest::{
-        exhibit::{CompareMode, Comparison, Drawing, Exhibit, Scene},
+        exhibit::{CompareMode, Comparison, Drawing, Exhibit, LampColour, Scene},
         frames::other_side,
     },
     optics::tier::Tier,
@@ -92,7 +95,7 @@ pub enum Retreat {
 }
 
 /// What the hand holds.
-#[derive(Resource, Debug)]
+#[derive(Resource, Clone, Debug)]
 pub struct Hand {
     exhibit: Arc<Exhibit>,
     /// The same with the lamp where the hand put it.
@@ -108,6 +111,12 @@ pub struct Hand {
     picture: Picture,
     /// Motion is reduced to cuts.
     calm: bool,
+    /// Instead of what scenes say.
+    language: Option<String>,
+    /// Where the picture is coming to be turned to, in degrees.
+    straight: Option<f64>,
+    /// Of a tour that nobody is there to see.
+    stop: Option<touring::Stop>,
     /// A cheaper tier is good enough just now.
     hurried: bool,
     /// How the sheet is turned from rest: a rotation vector in the table's plane, in degrees.
@@ -153,6 +162,9 @@ impl Hand {
             serving: None,
             picture,
             calm,
+            language: None,
+            straight: None,
+            stop: None,
             hurried: false,
             turn: DVec2::ZERO,
             speed: Speed::default(),
@@ -202,10 +214,14 @@ impl Hand {
             Intent::Take => {
                 self.speed = Speed::default();
                 self.zoom = None;
+                self.straight = None;
                 self.grip = Some(Grip::Undecided);
             }
             Intent::Drag { from, to } => self.drag(from, to),
-            Intent::Release => self.grip = None,
+            Intent::Release => {
+                self.grip = None;
+                self.straighten();
+            }
             Intent::Pan(share) => {
                 let by = self.on_table(share * self.camera().width_mm);
                 self.speed = Speed::default();
@@ -219,8 +235,14 @@ impl Hand {
                 let width = self.zoom.map_or(self.camera().width_mm, |(width, _)| width);
                 self.zoom_to(width / factor, at);
             }
-            Intent::Pinch { from, to, factor } => {
+            Intent::Pinch {
+                from,
+                to,
+                factor,
+                turn,
+            } => {
                 self.set_width(self.camera().width_mm / factor, from);
+                self.turn_picture(turn, from);
                 self.shift(from, to);
             }
             // Two clicks on a hotspot are about it.
@@ -234,10 +256,52 @@ impl Hand {
             }
             Intent::RaiseLamp(elevation) => {
                 self.place_lamp(|lamp| lamp.raised(elevation));
-                // Another set-up of the lamp, to which the eye adapts, unlike a lamp that is
-                // only moved.
-                if self.exposed_for.is_some() {
-                    self.exposed_for = Some(Lux(self.lit.lighting(self.written()).reference_lux));
+                self.adapt();
+            }
+            Intent::LampTo(place) => {
+                let place = self.on_table(place);
+                self.place_lamp(|lamp| lamp.to(place));
+            }
+            Intent::SetLamp {
+                elevation_deg,
+                azimuth_deg,
+            } => {
+                let turned = azimuth_deg + self.view.camera.turn.0;
+                self.place_lamp(|lamp| lamp.raised(elevation_deg).towards_deg(turned));
+                self.adapt();
+            }
+            Intent::Warmth(kelvin) => {
+                self.view.glow.kelvin = Some(kelvin);
+                self.relight();
+            }
+            Intent::Intensity(gain) => {
+                self.view.glow.gain = gain;
+                self.relight();
+            }
+            Intent::SwitchTable => {
+                let written = self.written().transmitted;
+                self.view.transmitted = match self.view.transmitted {
+                    share if share < 1.0 => 1.0,
+                    _ if written < 1.0 => written,
+                    _ => 0.0,
+                };
+            }
+            Intent::GoTo(scene) => {
+                if scene < self.exhibit.scenes.len() && !self.refused.contains(&scene) {
+                    self.enter(scene);
+                }
+            }
+            Intent::Compare(mode) => {
+                let scene = self.shown().scene;
+                let written = self.written().compare.clone();
+                let compared =
+                    |mode| comparing::in_mode(&self.exhibit, &scene, written.as_ref(), mode);
+                self.view.compare = mode.map(compared);
+                self.turns_for = 0.0;
+            }
+            Intent::MoveCompare { from, to } => {
+                if let Some(comparison) = &mut self.view.compare {
+                    comparison.drag(from, to, self.picture.aspect);
                 }
             }
             Intent::StepCompare(by) => {
@@ -253,6 +317,10 @@ impl Hand {
             | Intent::ShiftCompare(_)
             | Intent::TurnCompare(_)
             | Intent::Transmit(_)
+            | Intent::TransmitTo(_)
+            | Intent::CompareTo(_)
+            | Intent::Overlay(_)
+            | Intent::OpacityTo(_)
             | Intent::ReliefOnly
             | Intent::Exaggerate
             | Intent::Stretch
@@ -278,6 +346,10 @@ impl Hand {
                 self.point_out(intent);
             }
             Intent::StepTool(_)
+            | Intent::Tool(_)
+            | Intent::StepFocus(_)
+            | Intent::Controls
+            | Intent::Activate
             | Intent::TakeBack
             | Intent::ReadOut
             | Intent::Export { .. }
@@ -293,6 +365,7 @@ impl Hand {
     /// Lets `seconds` pass. A sheet is turned over only while what is shown is `settled`: its
     /// other side may still be loading.
     pub fn advance(&mut self, seconds: f64, settled: bool) {
+        self.tour(if settled { seconds } else { 0.0 });
         // Once loaded, the other side stays at hand.
         self.both_sides |= self.is_steep();
         if let Some((target, at)) = self.zoom {
@@ -301,6 +374,15 @@ impl Hand {
             self.set_width(if arrived { target } else { next }, at);
             if arrived {
                 self.zoom = None;
+            }
+        }
+        if let Some(target) = self.straight {
+            let left = target - self.view.camera.turn.0;
+            let (left, _) = motion::spring(DVec2::new(left, 0.0), Speed::default(), seconds);
+            let arrived = left.x.abs() < REST_DEG;
+            self.view.camera.turn.0 = if arrived { target } else { target - left.x };
+            if arrived {
+                self.straight = None;
             }
         }
         if let Some(elapsed) = self.flip
@@ -350,7 +432,11 @@ impl Hand {
     /// Whether something goes on moving without being touched.
     pub fn is_moving(&self) -> bool {
         let glides = self.turn != DVec2::ZERO || self.speed != Speed::default();
-        self.zoom.is_some() || self.flip.is_some() || (glides && self.grip.is_none())
+        let comes = self.stop.is_some() && !self.calm
+            || self.zoom.is_some()
+            || self.straight.is_some()
+            || self.flip.is_some();
+        comes || (glides && self.grip.is_none())
     }
 
     /// What is to be shown.
@@ -364,6 +450,9 @@ impl Hand {
         scene.compare.clone_from(&self.view.compare);
         scene.enhance = self.view.enhance;
         scene.transmitted = self.view.transmitted;
+        if self.language.is_some() {
+            scene.language.clone_from(&self.language);
+        }
         // A lamp that is lowered darkens the sheet, as before the eyes of a visitor.
         if self.exposed_for.is_some() {
             scene.exposure.illuminance = self.exposed_for;
@@ -398,6 +487,19 @@ impl Hand {
             both_sides: self.both_sides || self.is_steep(),
             aspect: self.picture.aspect,
         }
+    }
+
+    /// How large the picture is.
+    pub fn picture(&self) -> Picture {
+        self.picture
+    }
+
+    /// The exhibit's first scene as written, in the language of scenes, or in this one.
+    pub fn go_home(&mut self, language: Option<String>) {
+        self.stop = None;
+        self.language = language;
+        self.hotspots = Hotspots::default();
+        self.enter(0);
     }
 
     /// What is shown belongs to it, with its lamps where they are written.
@@ -453,6 +555,52 @@ impl Hand {
     /// The tier at rest, which a hurried picture may not have.
     pub fn tier(&self) -> Tier {
         self.tier_at_rest()
+    }
+
+    /// Index of the scene that the view is of.
+    pub fn scene(&self) -> usize {
+        self.scene
+    }
+
+    /// The temperature of that lamp's colour as it is written, in kelvin, where it has one.
+    pub fn written_kelvin(&self) -> Option<f64> {
+        let lamp = movable_lamp(&self.exhibit, self.written())?;
+        match self.exhibit.lamps[lamp].colour {
+            LampColour::Temperature(kelvin) => Some(kelvin.0),
+            LampColour::Chromaticity(_) => None,
+        }
+    }
+
+    /// The light of that lamp.
+    pub fn glow(&self) -> Glow {
+        self.view.glow
+    }
+
+    /// Where that lamp stands as seen from above, of the hemisphere's radius, y up in the picture.
+    pub fn lamp_seen(&self) -> Option<DVec2> {
+        let turn = DVec2::from_angle(-self.view.camera.turn.radians());
+        self.view.lamp.map(|lamp| turn.rotate(lamp.seen()))
+    }
+
+    /// Every overlay of the side in view, and its opacity where it is on.
+    pub fn layers(&self) -> Vec<(usize, Option<f64>)> {
+        self.view.layers(self.drawing())
+    }
+
+    /// Comparisons that have something to compare.
+    pub fn comparisons(&self) -> Vec<CompareMode> {
+        let scene = self.shown().scene;
+        comparing::modes(&self.exhibit, &scene, self.written().compare.as_ref())
+    }
+
+    /// Everything is read in `language` (BCP 47) from now on; without one, as scenes say.
+    pub fn speak(&mut self, language: Option<String>) {
+        self.language = language;
+    }
+
+    /// Whether motion is reduced to cuts.
+    pub fn calm(&mut self, calm: bool) {
+        self.calm = calm;
     }
 
     /// Where the lamp stands that the hand moves.
@@ -522,6 +670,7 @@ impl Hand {
         self.speed = Speed::default();
         self.grip = None;
         self.zoom = None;
+        self.straight = None;
         self.before_true_size = None;
         self.flip = None;
         self.both_sides = false;
@@ -530,6 +679,13 @@ impl Hand {
     fn place_lamp(&mut self, change: impl FnOnce(LampPlace) -> LampPlace) {
         self.view.lamp = self.view.lamp.map(change);
         self.relight();
+    }
+
+    /// Another set-up of the lamp, to which the eye adapts, unlike a lamp that is only moved.
+    fn adapt(&mut self) {
+        if self.exposed_for.is_some() {
+            self.exposed_for = Some(Lux(self.lit.lighting(self.written()).reference_lux));
+        }
     }
 
     fn relight(&mut self) {

@@ -1,0 +1,529 @@
+//! Where controls lie: all within the reach that the installation states, none smaller than a finger needs,
+//! none over another, mirrored for those who read from the right.
+
+use bevy::math::{Rect, Vec2};
+
+use super::{Control, Facts, Panel, icons::Icon};
+
+/// Least side of what is touched.
+const TARGET_MM: f32 = 15.0;
+/// Between controls, of a target's side.
+const GAP: f32 = 0.14;
+/// Width of a character, and height of a line, in heights of the text.
+const CHARACTER: f32 = 0.6;
+const LINE: f32 = 1.35;
+/// A sign's side in heights of the text.
+const SIGN: f32 = 2.1;
+/// Widest panel of the list at the side, in targets.
+const LIST_TARGETS: f32 = 4.6;
+/// The dial's diameter in targets, and the least that is left of it where there is little room.
+const DIAL: f32 = 4.0;
+const DIAL_LEAST: f32 = 2.2;
+/// A picture of a scene, in targets.
+const THUMB: Vec2 = Vec2::new(2.2, 1.5);
+/// A window smaller than this, in targets, has keys only.
+const LEAST: Vec2 = Vec2::new(10.0, 7.0);
+
+/// The room that there is for controls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Room {
+    /// The picture in logical pixels.
+    pub size: Vec2,
+    /// Of the display.
+    pub px_per_mm: f32,
+    /// From the top, in logical pixels, what everybody reaches.
+    pub reach: Option<[f32; 2]>,
+    /// Height of the text in logical pixels.
+    pub text: f32,
+    pub right_to_left: bool,
+}
+
+/// How a control looks.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Look {
+    Button {
+        on: bool,
+    },
+    /// 0…1 from the side where reading begins.
+    Slider {
+        value: f32,
+    },
+    /// A lamp's place, −1…1 with y up.
+    Dial {
+        place: Vec2,
+    },
+    /// The picture of a scene.
+    Picture {
+        scene: usize,
+        on: bool,
+    },
+    /// Words alone.
+    Words,
+}
+
+/// A control in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Widget {
+    pub control: Control,
+    /// In logical pixels from the top left corner.
+    pub rect: Rect,
+    pub icon: Option<Icon>,
+    pub words: String,
+    pub look: Look,
+}
+
+/// What lies under controls, to be read on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Laid {
+    pub widgets: Vec<Widget>,
+    pub grounds: Vec<Rect>,
+    pub right_to_left: bool,
+}
+
+impl Laid {
+    /// The control at a place.
+    pub fn at(&self, place: Vec2) -> Option<&Widget> {
+        let is_there = |widget: &&Widget| widget.rect.contains(place) && widget.look != Look::Words;
+        self.widgets.iter().rev().find(is_there)
+    }
+
+    /// Whether a panel covers the sheet at a place.
+    pub fn covers(&self, place: Vec2) -> bool {
+        self.grounds.iter().any(|ground| ground.contains(place))
+    }
+
+    /// Height of what lies at the bottom, in logical pixels, which texts keep clear of.
+    pub fn foot(&self, room: &Room) -> f32 {
+        let bar = self.grounds.first();
+        bar.map_or(0.0, |bar| (room.size.y - bar.min.y).max(0.0))
+    }
+}
+
+impl Room {
+    /// Side of the smallest control.
+    pub fn target(&self) -> f32 {
+        (TARGET_MM * self.px_per_mm).max(self.text * (SIGN + LINE) * 1.1)
+    }
+
+    fn gap(&self) -> f32 {
+        self.target() * GAP
+    }
+
+    /// Left, top, right and bottom of what controls may take up.
+    fn free(&self) -> Rect {
+        let gap = self.gap();
+        let [top, bottom] = self.reach.unwrap_or([0.0, self.size.y]);
+        let top = top.clamp(0.0, self.size.y) + gap;
+        // A reach that this display has no part of is of no use.
+        let bottom = (bottom.clamp(0.0, self.size.y) - gap).max(top);
+        Rect::new(gap, top, self.size.x - gap, bottom)
+    }
+
+    /// Whether there is room for any.
+    pub fn is_enough(&self) -> bool {
+        let least = LEAST * TARGET_MM * self.px_per_mm.min(96.0 / 25.4);
+        self.size.cmpge(least).all() && self.free().height() > 2.0 * self.target()
+    }
+
+    fn width_of(&self, words: &str) -> f32 {
+        words.chars().count() as f32 * CHARACTER * self.text
+    }
+
+    /// `laid` as it is for those who read from the right.
+    fn turned(&self, mut laid: Laid) -> Laid {
+        if self.right_to_left {
+            let turn = |rect: &mut Rect| {
+                let (left, right) = (self.size.x - rect.max.x, self.size.x - rect.min.x);
+                (rect.min.x, rect.max.x) = (left, right);
+            };
+            laid.widgets
+                .iter_mut()
+                .for_each(|widget| turn(&mut widget.rect));
+            laid.grounds.iter_mut().for_each(turn);
+            laid.right_to_left = true;
+        }
+        laid
+    }
+}
+
+/// A button before it has a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Item {
+    pub control: Control,
+    pub icon: Option<Icon>,
+    pub words: String,
+    pub look: Look,
+}
+
+impl Item {
+    pub fn button(control: Control, icon: Option<Icon>, words: String, on: bool) -> Self {
+        Self {
+            control,
+            icon,
+            words,
+            look: Look::Button { on },
+        }
+    }
+
+    fn at(&self, rect: Rect) -> Widget {
+        Widget {
+            control: self.control,
+            rect,
+            icon: self.icon,
+            words: self.words.clone(),
+            look: self.look.clone(),
+        }
+    }
+}
+
+/// Lays out what there is.
+pub fn lay(room: &Room, facts: &Facts) -> Laid {
+    let mut laid = Laid::default();
+    if !room.is_enough() {
+        return laid;
+    }
+    if let Some(staff) = &facts.staff {
+        grid(room, &mut laid, staff, 3);
+        return room.turned(laid);
+    }
+    if let Some(countdown) = &facts.countdown {
+        grid(room, &mut laid, countdown, 1);
+        return room.turned(laid);
+    }
+    let mut top = bar(room, &mut laid, &facts.bar);
+    if facts.open.contains(&Panel::Scenes) && !facts.scenes.is_empty() {
+        top = strip(room, &mut laid, facts, top);
+    }
+    if facts.open.contains(&Panel::Light) {
+        light(room, &mut laid, facts, top);
+    }
+    list(room, &mut laid, &facts.list, top);
+    room.turned(laid)
+}
+
+/// The row at the bottom, in as many rows as it takes; returns where it ends above.
+fn bar(room: &Room, laid: &mut Laid, items: &[Item]) -> f32 {
+    let (free, gap, target) = (room.free(), room.gap(), room.target());
+    let widest = items.iter().map(|item| room.width_of(&item.words));
+    let width = widest.fold(target, f32::max) + room.text * 0.6;
+    let columns = (((free.width() - gap) / (width + gap)) as usize).clamp(1, items.len().max(1));
+    let rows = items.len().div_ceil(columns);
+    let columns = items.len().div_ceil(rows.max(1));
+    let height = rows as f32 * (target + gap) + gap;
+    let across = columns as f32 * (width + gap) + gap;
+    let left = (room.size.x - across) / 2.0;
+    let top = free.max.y - height;
+    laid.grounds
+        .push(Rect::new(left, top, left + across, free.max.y));
+    for (k, item) in items.iter().enumerate() {
+        let at = Vec2::new((k % columns) as f32, (k / columns) as f32);
+        let min = Vec2::new(left + gap, top + gap) + at * Vec2::new(width + gap, target + gap);
+        laid.widgets
+            .push(item.at(Rect::from_corners(min, min + Vec2::new(width, target))));
+    }
+    top
+}
+
+/// Pictures of scenes above `bottom`, with arrows where there are more; returns where it ends above.
+fn strip(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) -> f32 {
+    let (free, gap, target) = (room.free(), room.gap(), room.target());
+    let size = THUMB * target + Vec2::new(0.0, room.text * LINE);
+    let room_for = ((free.width() - gap - 2.0 * (target + gap)) / (size.x + gap)) as usize;
+    let count = room_for.clamp(1, facts.scenes.len());
+    let first = facts.first_scene.min(facts.scenes.len() - count);
+    let is_paged = count < facts.scenes.len();
+    let arrows = if is_paged { 2.0 * (target + gap) } else { 0.0 };
+    let across = count as f32 * (size.x + gap) + gap + arrows;
+    let left = (room.size.x - across) / 2.0;
+    let top = bottom - gap - size.y - 2.0 * gap;
+    laid.grounds
+        .push(Rect::new(left, top, left + across, bottom - gap));
+    let mut x = left + gap;
+    let [back, on] = facts.arrows.unwrap_or([Icon::Previous, Icon::Next]);
+    let arrow = |x: f32, control, icon| Widget {
+        control,
+        rect: Rect::new(x, top + gap, x + target, top + gap + size.y),
+        icon: Some(icon),
+        words: String::new(),
+        look: Look::Button { on: false },
+    };
+    if is_paged {
+        laid.widgets.push(arrow(x, Control::Page(-1), back));
+        x += target + gap;
+    }
+    for scene in first..first + count {
+        let min = Vec2::new(x, top + gap);
+        laid.widgets.push(Widget {
+            control: Control::Scene(scene),
+            rect: Rect::from_corners(min, min + size),
+            icon: None,
+            words: facts.scenes[scene].clone(),
+            look: Look::Picture {
+                scene,
+                on: scene == facts.scene,
+            },
+        });
+        x += size.x + gap;
+    }
+    if is_paged {
+        laid.widgets.push(arrow(x, Control::Page(1), on));
+    }
+    top
+}
+
+/// The lamp in the hand, at the side where reading ends.
+fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
+    let (free, gap, target) = (room.free(), room.gap(), room.target());
+    let across = DIAL.max(4.0) * target + 5.0 * gap;
+    let columns = 4;
+    let rows = facts.presets.len().div_ceil(columns);
+    let sliders = facts.sliders.len() as f32;
+    let line = room.text * LINE;
+    let fixed = (rows as f32 + sliders) * (target + gap) + 3.0 * gap + line;
+    let room_for = bottom - gap - free.min.y - fixed;
+    let diameter = (DIAL * target).min(room_for).max(0.0);
+    let has_dial = diameter >= DIAL_LEAST * target && facts.lamp.is_some();
+    let height = fixed + if has_dial { diameter } else { -line };
+    let (left, top) = (free.max.x - across, bottom - gap - height);
+    laid.grounds
+        .push(Rect::new(left, top, free.max.x, bottom - gap));
+    let mut y = top + gap;
+    if let (true, Some(place)) = (has_dial, facts.lamp) {
+        let min = Vec2::new(left + (across - diameter) / 2.0, y);
+        laid.widgets.push(Widget {
+            control: Control::Dial,
+            rect: Rect::from_corners(min, min + diameter),
+            icon: None,
+            words: String::new(),
+            look: Look::Dial { place },
+        });
+        y += diameter;
+        laid.widgets.push(Widget {
+            control: Control::Dial,
+            rect: Rect::new(left, y, free.max.x, y + line),
+            icon: None,
+            words: facts.lamp_words.clone(),
+            look: Look::Words,
+        });
+        y += line + gap;
+    }
+    let width = (across - gap) / columns as f32 - gap;
+    for (k, item) in facts.presets.iter().enumerate() {
+        let at = Vec2::new((k % columns) as f32, (k / columns) as f32);
+        let min = Vec2::new(left + gap, y) + at * Vec2::new(width + gap, target + gap);
+        laid.widgets
+            .push(item.at(Rect::from_corners(min, min + Vec2::new(width, target))));
+    }
+    y += rows as f32 * (target + gap);
+    for item in &facts.sliders {
+        laid.widgets
+            .push(item.at(Rect::new(left + gap, y, free.max.x - gap, y + target)));
+        y += target + gap;
+    }
+}
+
+/// The open list at the side where reading begins, in one column or two.
+fn list(room: &Room, laid: &mut Laid, items: &[Item], bottom: f32) {
+    if items.is_empty() {
+        return;
+    }
+    let (free, gap, target) = (room.free(), room.gap(), room.target());
+    let fits = |count: usize| count as f32 * (target + gap) + 2.0 * gap <= bottom - free.min.y;
+    let columns = (1..4)
+        .find(|columns| fits(items.len().div_ceil(*columns)))
+        .unwrap_or(4);
+    let rows = items.len().div_ceil(columns);
+    let widest = items.iter().map(|item| {
+        room.width_of(&item.words) + room.text * if item.icon.is_some() { SIGN + 0.6 } else { 0.6 }
+    });
+    let widest = widest.fold(2.0 * target, f32::max);
+    let width = widest.min(LIST_TARGETS * target);
+    let across = columns as f32 * (width + gap) + gap;
+    let height = rows as f32 * (target + gap) + gap;
+    let top = (bottom - gap - height).max(free.min.y);
+    laid.grounds.push(Rect::new(
+        free.min.x,
+        top,
+        free.min.x + across,
+        bottom - gap,
+    ));
+    for (k, item) in items.iter().enumerate() {
+        let at = Vec2::new((k / rows) as f32, (k % rows) as f32);
+        let min =
+            Vec2::new(free.min.x + gap, top + gap) + at * Vec2::new(width + gap, target + gap);
+        laid.widgets
+            .push(item.at(Rect::from_corners(min, min + Vec2::new(width, target))));
+    }
+}
+
+/// Words and buttons in the middle of what is reached, `columns` in a row below a line of words.
+fn grid(room: &Room, laid: &mut Laid, items: &[Item], columns: usize) {
+    let (free, gap, target) = (room.free(), room.gap(), room.target());
+    let is_words = |item: &&Item| item.look == Look::Words;
+    let (words, buttons): (Vec<&Item>, Vec<&Item>) = items.iter().partition(is_words);
+    let widest = buttons.iter().map(|item| room.width_of(&item.words));
+    let width = widest.fold(1.4 * target, f32::max) + room.text;
+    let line = room.text * LINE * 1.4;
+    let rows = buttons.len().div_ceil(columns.max(1));
+    let head = words.len() as f32 * line;
+    let said = words.iter().map(|item| room.width_of(&item.words) * 1.25);
+    let across = said.fold(columns as f32 * (width + gap) + gap, f32::max) + 2.0 * gap;
+    let height = head + rows as f32 * (target + gap) + 3.0 * gap;
+    let middle = Vec2::new(room.size.x / 2.0, free.center().y);
+    let min = middle - Vec2::new(across, height) / 2.0;
+    laid.grounds
+        .push(Rect::from_corners(min, min + Vec2::new(across, height)));
+    for (k, item) in words.iter().enumerate() {
+        let y = min.y + gap + k as f32 * line;
+        laid.widgets
+            .push(item.at(Rect::new(min.x, y, min.x + across, y + line)));
+    }
+    let left = middle.x - (columns as f32 * (width + gap) - gap) / 2.0;
+    for (k, item) in buttons.iter().enumerate() {
+        let at = Vec2::new((k % columns) as f32, (k / columns) as f32);
+        let corner =
+            Vec2::new(left, min.y + head + 2.0 * gap) + at * Vec2::new(width + gap, target + gap);
+        laid.widgets.push(item.at(Rect::from_corners(
+            corner,
+            corner + Vec2::new(width, target),
+        )));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::visitor::controls::Preset;
+
+    /// As much as there ever is.
+    fn all() -> Facts {
+        let button =
+            |control, words: &str| Item::button(control, Some(Icon::Home), words.to_owned(), false);
+        let slider = |control| Item {
+            control,
+            icon: None,
+            words: "Colour 3000 K".into(),
+            look: Look::Slider { value: 0.5 },
+        };
+        Facts {
+            open: [Panel::Light, Panel::Scenes, Panel::More].into(),
+            bar: (0..8)
+                .map(|k| button(Control::Scene(k), "Fourteen signs"))
+                .collect(),
+            scenes: vec!["A scene".into(); 20],
+            lamp: Some(Vec2::ZERO),
+            lamp_words: "lamp 45° high, from the upper left (135°)".into(),
+            presets: Preset::ALL
+                .map(|p| button(Control::Preset(p), "From left"))
+                .into(),
+            sliders: vec![
+                slider(Control::Warmth),
+                slider(Control::Intensity),
+                slider(Control::Through),
+            ],
+            list: (0..11)
+                .map(|k| button(Control::Language(k), "Deutsch"))
+                .collect(),
+            ..Facts::default()
+        }
+    }
+
+    /// Windows and displays: a desk's, a wall's, portrait, two of them, a table's.
+    fn rooms() -> Vec<Room> {
+        let mut rooms = Vec::new();
+        for (size, px_per_mm) in [
+            ([1280.0, 800.0], 3.78),
+            ([1920.0, 1080.0], 1.6),
+            ([3840.0, 2160.0], 2.33),
+            ([1080.0, 1920.0], 1.6),
+            ([5760.0, 2160.0], 2.33),
+        ] {
+            for factor in [1.0, 1.3, 1.6] {
+                for right_to_left in [false, true] {
+                    let size: Vec2 = Vec2::from(size);
+                    rooms.push(Room {
+                        size,
+                        px_per_mm,
+                        reach: None,
+                        text: (0.02 * size.y.min(0.75 * size.x)).max(11.0) * 0.85 * factor,
+                        right_to_left,
+                    });
+                }
+            }
+        }
+        rooms
+    }
+
+    #[test]
+    fn everything_is_large_enough_within_the_picture_and_beside_all_else() {
+        for room in rooms() {
+            let laid = lay(&room, &all());
+            let touched: Vec<&Widget> = laid
+                .widgets
+                .iter()
+                .filter(|w| w.look != Look::Words)
+                .collect();
+            assert!(touched.len() > 20, "{room:?}");
+            let least = TARGET_MM * room.px_per_mm - 0.01;
+            let picture = Rect::from_corners(Vec2::ZERO, room.size).inflate(0.5);
+            for (k, widget) in touched.iter().enumerate() {
+                let size = widget.rect.size();
+                assert!(size.min_element() >= least, "{widget:?} in {room:?}");
+                let inside = picture.contains(widget.rect.min) && picture.contains(widget.rect.max);
+                assert!(inside, "{widget:?} in {room:?}");
+                assert_eq!(laid.at(widget.rect.center()), Some(*widget));
+                for other in &touched[..k] {
+                    let shared = widget.rect.intersect(other.rect);
+                    assert!(
+                        shared.is_empty(),
+                        "{widget:?} lies on {other:?} in {room:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn controls_stay_within_the_reach_that_is_stated() {
+        let mut room = Room {
+            size: Vec2::new(1080.0, 3840.0),
+            px_per_mm: 1.6,
+            reach: Some([1500.0, 2900.0]),
+            text: 16.0,
+            right_to_left: false,
+        };
+        let within = |room: &Room| {
+            let laid = lay(room, &all());
+            let reach = [1500.0, 2900.0];
+            let is_in = |w: &&Widget| w.rect.min.y >= reach[0] && w.rect.max.y <= reach[1];
+            laid.widgets.iter().filter(is_in).count() == laid.widgets.len()
+        };
+        assert!(within(&room));
+        room.reach = None;
+        assert!(!within(&room), "it can fail");
+    }
+
+    #[test]
+    fn a_window_too_small_for_fingers_has_none() {
+        let room = Room {
+            size: Vec2::new(320.0, 240.0),
+            px_per_mm: 3.78,
+            reach: None,
+            text: 11.0,
+            right_to_left: false,
+        };
+        assert_eq!(lay(&room, &all()), Laid::default());
+    }
+
+    #[test]
+    fn a_countdown_and_the_staff_s_pad_cover_all_else() {
+        let room = rooms()[0];
+        let countdown = vec![Item::button(Control::Stay, None, "Stay".into(), true)];
+        let facts = Facts {
+            countdown: Some(countdown),
+            ..all()
+        };
+        let laid = lay(&room, &facts);
+        assert_eq!(laid.widgets.len(), 1);
+    }
+}
