@@ -34,12 +34,25 @@ has_vulkan_driver() {
     return 1
 }
 
+# Whether a folder of fonts has one that Recto knows to be Japanese (src/wording/fonts.rs).
+has_japanese_font() {
+    for folder in /usr/share/fonts /usr/local/share/fonts "$HOME/.local/share/fonts" "$HOME/.fonts"; do
+        [ -d "$folder" ] || continue
+        found=$(find "$folder" \( -name 'MTLc3m.ttf' -o -name 'NotoSansCJK-Regular.ttc' \
+            -o -name 'NotoSansJP-Regular.*' -o -name 'VL-*Gothic-Regular.ttf' -o -name 'ipag*.ttf' \
+            -o -name 'DroidSansFallback*.ttf' \) 2>/dev/null | head -n 1)
+        [ -n "$found" ] && return
+    done
+    return 1
+}
+
 missing_packages() {
     command -v cc >/dev/null || echo build-essential
     has_library libvulkan.so.1 || echo libvulkan1
     has_vulkan_driver || echo mesa-vulkan-drivers
-    # Legends have letters beyond ASCII.
+    # Legends and wordings have letters beyond ASCII: Latin, Greek, Cyrillic and Arabic, and Japanese.
     [ -e /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf ] || echo fonts-dejavu-core
+    has_japanese_font || echo fonts-motoya-l-cedar
     # What a window loads at run time.
     has_library libX11.so.6 || echo libx11-6
     has_library libX11-xcb.so.1 || echo libx11-xcb1

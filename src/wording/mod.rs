@@ -8,15 +8,22 @@
 //! | the museum's folder, with all its faults | [`Wordings::read`] |
 //! | ids and variables of a file, with their places | `source` |
 //! | which way a language is written | [`direction`] |
+//! | which font files have its letters | [`fonts`] |
 //!
 //! What an exhibit says is written in its manifest; messages for the curator and the technician
 //! are English and not here.
 
 pub mod catalogue;
+pub mod fonts;
 mod museum;
 mod source;
 
-use std::{borrow::Cow, collections::HashMap, fmt, path::Path};
+use std::{
+    borrow::Cow,
+    collections::{BTreeSet, HashMap},
+    fmt,
+    path::Path,
+};
 
 use fluent_bundle::{FluentArgs, FluentResource, FluentValue, concurrent::FluentBundle};
 use unic_langid::LanguageIdentifier;
@@ -199,6 +206,8 @@ struct Language {
     bundle: FluentBundle<FluentResource>,
     /// Messages without variables, ready to be said.
     plain: HashMap<String, String>,
+    /// Of everything that it can say, and a few more.
+    letters: BTreeSet<char>,
 }
 
 impl fmt::Debug for Language {
@@ -225,8 +234,11 @@ impl Language {
         }
         let mut plain = HashMap::new();
         let mut ids = Vec::new();
+        let mut letters = BTreeSet::new();
         for text in texts {
             ids.extend(source::messages(text).into_iter().map(|m| m.id.to_owned()));
+            let lines = text.lines().filter(|line| !line.starts_with('#'));
+            letters.extend(lines.flat_map(str::chars));
             let resource = match FluentResource::try_new(text.to_owned()) {
                 Ok(resource) | Err((resource, _)) => resource,
             };
@@ -242,7 +254,12 @@ impl Language {
                 plain.insert(id, text.into_owned());
             }
         }
-        Some(Self { tag, bundle, plain })
+        Some(Self {
+            tag,
+            bundle,
+            plain,
+            letters,
+        })
     }
 
     fn knows(&self, id: &str) -> bool {
