@@ -10,6 +10,7 @@ use super::{
         draw::{Languages, ProgramWords},
         facts::Spoken,
     },
+    glass::Glass,
     marks::{self, Ink, Mark, Marks},
 };
 use crate::{
@@ -158,19 +159,16 @@ pub fn take_turns(comparison: &mut Comparison) {
 pub fn lay(
     (shown, texts): (Res<Shown>, Res<Texts>),
     (words, languages, interface): (Res<ProgramWords>, Res<Languages>, Res<Interface>),
-    windows: Query<&Window>,
+    glass: Res<Glass>,
     mut marks: ResMut<Marks>,
 ) {
     let spoken = Spoken {
         wordings: &words.0,
         language: languages.tag(interface.language),
     };
-    let Ok(window) = windows.single() else {
-        return;
-    };
     let mut wanted = Vec::new();
     if let Some(comparison) = shown.scene.compare.as_ref().filter(|c| !c.mode.combines()) {
-        let picture = (shown.aspect, window.size());
+        let picture = (shown.aspect, glass.size);
         for edge in comparison.edges(shown.aspect) {
             wanted.extend(marks::lines(&edge, false, &Part::WHOLE, picture, Ink::Edge));
         }
@@ -179,7 +177,7 @@ pub fn lay(
             // They come and go with the caption.
             if let Some(at) = part.top(shown.aspect).filter(|_| texts.caption) {
                 wanted.push(Mark::Words {
-                    at: marks::px(at, window.size()),
+                    at: marks::px(at, glass.size),
                     text: caption::name(&shown, *member, spoken),
                     is_centred: true,
                 });

@@ -15,7 +15,7 @@ use std::{
 use bevy::prelude::*;
 use glam::UVec2;
 
-use super::{caption::Texts, hand::Hand, intent::Intent, measuring::Measuring};
+use super::{caption::Texts, glass::Glass, hand::Hand, intent::Intent, measuring::Measuring};
 use crate::{
     figure::bar::LEAST_PX,
     manifest::{Exhibit, SaveError},
@@ -62,7 +62,7 @@ pub fn export(
     mut intents: MessageReader<Intent>,
     (hand, measuring, waker): (Res<Hand>, Res<Measuring>, Res<Waker>),
     (mut exports, mut texts): (ResMut<Exports>, ResMut<Texts>),
-    windows: Query<&Window>,
+    glass: Res<Glass>,
 ) {
     let exports = exports.bypass_change_detection();
     for done in exports.done() {
@@ -78,10 +78,7 @@ pub fn export(
         let Intent::Export { linear } = *intent else {
             continue;
         };
-        let size = windows.single().map(Window::physical_size);
-        let size = size
-            .unwrap_or(UVec2::new(1920, 1080))
-            .max(UVec2::from(LEAST_PX));
+        let size = glass.pixels.max(UVec2::from(LEAST_PX));
         texts.notice = Some(
             match exports.begin(&hand, &measuring, size, linear, &waker) {
                 Ok(path) => format!("exporting to {} …", path.display()),

@@ -7,6 +7,7 @@ use bevy::prelude::*;
 use glam::{DVec2, DVec3};
 
 use super::{
+    glass::Glass,
     hand::Hand,
     intent::Intent,
     marks::{self, Ink, Marks, Shape},
@@ -204,12 +205,9 @@ impl Hand {
 /// Lays the outlines over the picture.
 pub fn lay(
     (shown, shape, mut hand): (Res<Shown>, Res<Shape>, ResMut<Hand>),
-    windows: Query<&Window>,
+    glass: Res<Glass>,
     mut marks: ResMut<Marks>,
 ) {
-    let Ok(window) = windows.single() else {
-        return;
-    };
     let mut outlines = Vec::new();
     if hand.shows_hotspots() {
         let drawing = shown.exhibit.drawing_of(&shown.scene);
@@ -224,7 +222,7 @@ pub fn lay(
                 true => Ink::Open,
                 false => Ink::Quiet,
             };
-            let picture = (shown.aspect, window.size());
+            let picture = (shown.aspect, glass.size);
             outlines.extend(marks::lines(&seen.outline, true, &seen.part, picture, ink));
         }
     }

@@ -13,7 +13,8 @@
 //! | what was measured, and what lies under the pointer | `board` |
 //! | lines and words that lie on the sheet | `marks` |
 //! | the view as a figure, and what was measured as a table | `export` |
-//! | texts | `caption` |
+//! | the picture that people stand before | `glass` |
+//! | texts, and the fonts of every language | `caption`, `letters` |
 //! | while nobody is there | `attract` |
 //! | what only the staff gets at | `staff` |
 //! | what a resting window is woken for | `alarm` |
@@ -29,11 +30,13 @@ pub mod controls;
 mod display;
 mod export;
 mod foresight;
+mod glass;
 pub mod hand;
 mod hotspots;
 mod input;
 mod intent;
 mod lamp;
+mod letters;
 mod marks;
 mod measuring;
 mod motion;

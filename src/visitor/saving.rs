@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use bevy::prelude::*;
 use glam::UVec2;
 
-use super::{caption::Texts, hand::Hand, intent::Intent};
+use super::{caption::Texts, glass::Glass, hand::Hand, intent::Intent};
 use crate::{
     manifest::{Fingerprint, SaveAs, SaveError, Wording},
     stage::say,
@@ -22,7 +22,7 @@ pub struct Saved(Option<Fingerprint>);
 pub fn keep(
     mut intents: MessageReader<Intent>,
     (hand, mut texts, mut saved): (Res<Hand>, ResMut<Texts>, ResMut<Saved>),
-    windows: Query<&Window>,
+    glass: Res<Glass>,
 ) {
     for intent in intents.read() {
         let said = match intent {
@@ -34,8 +34,7 @@ pub fn keep(
                 }
             },
             Intent::Link => {
-                let size = windows.single().map(Window::physical_size);
-                match link(&hand, size.unwrap_or(UVec2::new(1920, 1080))) {
+                match link(&hand, glass.pixels) {
                     Ok(command) => {
                         // Nobody may be reading there any more.
                         let _ = writeln!(io::stdout(), "{command}");

@@ -8,6 +8,7 @@ use glam::DVec2;
 
 use super::{
     caption::Texts,
+    glass::Glass,
     hand::Hand,
     input::Devices,
     intent::Intent,
@@ -100,7 +101,7 @@ pub fn is_for_tool(measuring: &Measuring, intent: Intent) -> bool {
 pub fn follow(
     mut intents: MessageReader<Intent>,
     (hand, shown, shape): (Res<Hand>, Res<Shown>, Res<Shape>),
-    windows: Query<&Window>,
+    glass: Res<Glass>,
     (mut measuring, mut pointer, mut texts): (ResMut<Measuring>, ResMut<Pointer>, ResMut<Texts>),
     (mut reader, waker): (ResMut<Reader>, Res<Waker>),
     mut version: Local<Option<Arc<Exhibit>>>,
@@ -128,9 +129,6 @@ pub fn follow(
         *version = Some(hand.exhibit().clone());
     }
     for intent in intents.read() {
-        let Ok(window) = windows.single() else {
-            return;
-        };
         match *intent {
             Intent::StepTool(by) => {
                 measuring.step(by);
@@ -146,11 +144,11 @@ pub fn follow(
             }
             Intent::Drag { .. } => measuring.bypass_change_detection().forget_double_click(),
             intent if is_for_tool(&measuring, intent) => {
-                let view = View::new(&shown, &shape, window.size());
+                let view = View::new(&shown, &shape, glass.size);
                 let laid = match intent {
                     // A sheet that is being turned is not measured.
                     Intent::Tap(at) if !hand.is_moving() => {
-                        let seen = view.seen(&shown, marks::px(at, window.size()));
+                        let seen = view.seen(&shown, marks::px(at, glass.size));
                         seen.and_then(|seen| {
                             let scene = &view.sheets[seen.sheet].scene;
                             measuring.lay(on(&shown.exhibit, scene, seen.side), &seen)
@@ -224,17 +222,14 @@ pub fn hear(
 /// Points: shows the same place of every other sheet, and asks what lies there.
 pub fn point(
     (devices, shown, shape, hand): (Res<Devices>, Res<Shown>, Res<Shape>, Res<Hand>),
-    windows: Query<&Window>,
+    glass: Res<Glass>,
     (mut pointer, mut marks): (ResMut<Pointer>, ResMut<Marks>),
     (mut reader, waker): (ResMut<Reader>, Res<Waker>),
 ) {
     if !(devices.is_changed() || shown.is_changed() || shape.is_changed() || pointer.is_changed()) {
         return;
     }
-    let Ok(window) = windows.single() else {
-        return;
-    };
-    let view = View::new(&shown, &shape, window.size());
+    let view = View::new(&shown, &shape, glass.size);
     let seen = devices.pointer().and_then(|at| view.seen(&shown, at));
     if pointer.seen != seen {
         pointer.bypass_change_detection().seen = seen;
@@ -294,15 +289,12 @@ pub fn point(
 /// Lays what is measured over the picture.
 pub fn lay(
     (measuring, pointer, shown, shape): (Res<Measuring>, Res<Pointer>, Res<Shown>, Res<Shape>),
-    windows: Query<&Window>,
+    glass: Res<Glass>,
     mut marks: ResMut<Marks>,
 ) {
-    let Ok(window) = windows.single() else {
-        return;
-    };
     let drawing = shown.exhibit.drawing_of(&shown.scene);
     let surface = shape.of(drawing).map(|surface| &**surface);
-    let picture = (shown.aspect, window.size());
+    let picture = (shown.aspect, glass.size);
     let mut wanted = Vec::new();
     let empty = measuring.laid().is_empty() && measuring.laying().is_none();
     let sheets = if empty {
@@ -331,7 +323,7 @@ pub fn lay(
             let shows = |at: &DVec2| part.shows(*at, shown.aspect);
             let places: Vec<DVec2> = places?.into_iter().filter(shows).collect();
             wanted.extend(places.iter().map(|at| Mark::Ring {
-                middle: marks::px(*at, window.size()),
+                middle: marks::px(*at, glass.size),
                 ink: Ink::Measured,
             }));
             Some(places)
@@ -346,7 +338,7 @@ pub fn lay(
             let last = places.and_then(|places| places.last().copied());
             if let Some(at) = last.filter(|_| is_own) {
                 wanted.push(Mark::Words {
-                    at: marks::px(at, window.size()),
+                    at: marks::px(at, glass.size),
                     text: laid.label(),
                     is_centred: false,
                 });

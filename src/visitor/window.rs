@@ -43,10 +43,12 @@ use super::{
     },
     export::{self, Exports},
     foresight::{Foresight, Observed, foresee},
+    glass::Glass,
     hand::{Hand, Picture, Retreat},
     hotspots,
     input::{Devices, Ground, Wish},
     intent::Intent,
+    letters::{self, FontFolder},
     marks::{self, Marks, Shape},
     measuring::Measuring,
     reader::Reader,
@@ -184,7 +186,9 @@ impl Plugin for VisitorPlugin {
             .insert_resource(House(manners.clone()))
             .insert_resource(languages)
             .init_resource::<ProgramWords>()
+            .init_resource::<FontFolder>()
             .init_resource::<Reach>()
+            .init_resource::<Glass>()
             .init_resource::<Controls>()
             .init_resource::<Icons>()
             .init_resource::<Thumbs>()
@@ -204,6 +208,8 @@ impl Plugin for VisitorPlugin {
             .insert_resource(PictureSize(UVec2::ONE))
             .add_message::<Intent>()
             .add_message::<Reread>()
+            .add_systems(Startup, letters::load)
+            .add_systems(PreUpdate, letters::hint)
             .add_systems(
                 Update,
                 (
@@ -352,26 +358,37 @@ fn measure(
     mut hand: ResMut<Hand>,
     mut devices: ResMut<Devices>,
     mut texts: Query<&mut TextCamera>,
-    (mut picture_size, mut reach, house): (ResMut<PictureSize>, ResMut<Reach>, Res<House>),
+    (mut picture_size, mut glass): (ResMut<PictureSize>, ResMut<Glass>),
+    (mut reach, house): (ResMut<Reach>, Res<House>),
 ) {
     let Ok((window, monitor)) = windows.single() else {
         return;
     };
-    let size = window.size();
+    let (size, pixels) = match glass.width_mm {
+        Some(_) => (glass.size, glass.pixels),
+        None => (window.size(), window.physical_size()),
+    };
     if size.min_element() < 1.0 {
         return;
     }
-    picture_size.0 = window.physical_size();
+    let wanted = Glass {
+        size,
+        pixels,
+        ..glass.clone()
+    };
+    glass.set_if_neq(wanted);
+    picture_size.0 = pixels;
     for mut text in &mut texts {
         if text.height != size.y {
             text.height = size.y;
         }
     }
-    let pixels = window.physical_width();
+    let width_px = window.physical_width();
     let monitor = monitor.and_then(|on| monitors.get(on.0).ok());
     let measured = display_mm.0.zip(monitor).map(|([width, _], monitor)| {
-        f64::from(pixels) * width / f64::from(monitor.physical_width.max(1))
+        f64::from(width_px) * width / f64::from(monitor.physical_width.max(1))
     });
+    let measured = glass.width_mm.or(measured);
     let width_mm = measured.unwrap_or(f64::from(size.x) * MM_PER_INCH / PPI);
     devices.resize(size, size.x / width_mm.max(1.0) as f32);
     reach.0 = house
@@ -456,7 +473,8 @@ fn read_devices(
     mut events: MessageReader<WindowEvent>,
     mut devices: ResMut<Devices>,
     time: Res<Time<Real>>,
-    (controls, shown, house): (Res<Controls>, Res<Shown>, Res<House>),
+    (controls, shown): (Res<Controls>, Res<Shown>),
+    (house, glass): (Res<House>, Res<Glass>),
     (mut attract, mut staff, mut hand): (ResMut<Attract>, ResMut<StaffPanel>, ResMut<Hand>),
     (mut intents, mut contacts): (MessageWriter<Intent>, MessageWriter<Contact>),
 ) {
@@ -470,6 +488,7 @@ fn read_devices(
         compare: &taken,
     };
     for event in events.read() {
+        let event = &glass.event(event);
         if is_touch(event) && attract.touch() != Touched::GoesOn {
             hand.end_tour();
         }

@@ -15,7 +15,9 @@ use crate::{
         Shown,
         legend::{Face, TextCamera, text_size},
     },
-    visitor::{attract::Attract, hand::Hand, measuring::Measuring, staff::StaffPanel},
+    visitor::{
+        attract::Attract, glass::Glass, hand::Hand, measuring::Measuring, staff::StaffPanel,
+    },
     wording::Wordings,
 };
 
@@ -76,13 +78,10 @@ pub fn arrange(
     (attract, staff): (Res<Attract>, Res<StaffPanel>),
     (words, reach): (Res<ProgramWords>, Res<Reach>),
     mut languages: ResMut<Languages>,
-    windows: Query<&Window>,
+    glass: Res<Glass>,
     mut texts: Query<&mut TextCamera>,
     mut controls: ResMut<Controls>,
 ) {
-    let Ok(window) = windows.single() else {
-        return;
-    };
     let offered = facts::languages(&languages.installed, &shown.exhibit);
     if languages.offered != offered {
         languages.offered = offered;
@@ -92,7 +91,7 @@ pub fn arrange(
         wordings: &words.0,
         language,
     };
-    let size = window.size();
+    let size = glass.size;
     let room = Room {
         size,
         px_per_mm: size.x / hand.picture().width_mm.max(1.0) as f32,
