@@ -5,7 +5,13 @@ use std::path::PathBuf;
 use super::{Failure, later, options};
 use crate::{
     optics::tier::Tier,
-    visitor::{self, KEYS, ShowError, ShowOptions},
+    visitor::{self, KEYS, Manners, ShowError, ShowOptions, Waits},
+};
+
+/// On a public wall that says nothing else.
+const WAITS: Waits = Waits {
+    idle_s: 120.0,
+    countdown_s: 15.0,
 };
 
 /// The exhibit that is shown where none is named.
@@ -36,7 +42,7 @@ pub struct Arguments {
     /// Where E exports figures to; without it, the folder that recto was started in
     #[arg(long, value_name = "DIR")]
     export: Option<PathBuf>,
-    /// For a public wall (not in this version yet)
+    /// For a public wall: fills the display, leads nowhere else, and tours while nobody is there
     #[arg(long)]
     kiosk: bool,
     /// The place and its displays (not in this version yet)
@@ -45,9 +51,6 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
-    if arguments.kiosk {
-        return Err(later::not_yet("--kiosk"));
-    }
     if arguments.installation.is_some() {
         return Err(later::not_yet("--installation"));
     }
@@ -57,8 +60,13 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         tier: arguments.tier,
         display_mm: arguments.display_mm,
         size: arguments.size,
-        fullscreen: arguments.fullscreen,
+        fullscreen: arguments.fullscreen || arguments.kiosk,
         export: arguments.export,
+        manners: Manners {
+            kiosk: arguments.kiosk,
+            waits: arguments.kiosk.then_some(WAITS),
+            ..Manners::default()
+        },
     };
     let path = arguments.exhibit.or_else(sample_exhibit).ok_or_else(|| {
         Failure::Usage(

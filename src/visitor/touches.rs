@@ -134,11 +134,6 @@ impl Touches {
         self.active().any(is_there)
     }
 
-    /// Whether this contact lies on the sheet.
-    pub fn holds(&self, id: u64) -> bool {
-        self.fingers.iter().any(|finger| finger.id == id)
-    }
-
     /// A contact lands.
     pub fn land(&mut self, id: u64, at: Vec2, now: Duration, mut did: impl FnMut(Gesture)) {
         self.forget(now, &mut did);
@@ -551,7 +546,8 @@ mod tests {
         glass.land(8, mm(300.0, 100.0), 100_000);
         glass.go(8, mm(320.0, 100.0), 100_050);
         assert!(matches!(glass.take().last(), Some(Gesture::Drag { .. })));
-        assert!(!glass.touches.holds(7) && glass.touches.holds(8));
+        let holds = |id| glass.touches.fingers.iter().any(|finger| finger.id == id);
+        assert!(!holds(7) && holds(8));
         // Numbers that never landed are of no interest.
         glass.go(99, mm(1.0, 1.0), 100_060);
         glass.lift(99, 100_070);

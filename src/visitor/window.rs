@@ -128,6 +128,7 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
     let waker = Waker(Arc::new(wake));
     app.insert_resource(Alarm::new(waker.clone()))
         .insert_resource(waker)
+        .insert_resource(Thumbs::by_itself())
         .add_plugins((
             StagePlugin {
                 display: true,

@@ -187,7 +187,8 @@ fn the_lamp_follows_the_hand_and_stays_in_the_room() {
     let as_read = hand.shown();
     hand.apply(Intent::RaiseLamp(12.0));
     let lamp = hand.lamp().expect("a lamp");
-    assert_eq!(lamp.words(), "lamp 12° high, from the left (180°)");
+    assert_eq!(lamp.sector(), Some("left"));
+    assert_eq!((lamp.elevation_deg, lamp.azimuth_deg), (12.0, 180.0));
     let LampKind::Distant { elevation, .. } = hand.shown().exhibit.lamps[0].kind else {
         panic!("its kind stays");
     };

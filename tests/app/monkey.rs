@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
     window::{CursorMoved, WindowEvent},
 };
-use rand::{RngExt, SeedableRng, rngs::StdRng};
+use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus as Random};
 use recto::visitor::{
     Hand, Manners,
     controls::{Control, Interface},
@@ -25,7 +25,7 @@ const EVENTS_ASKED: &str = "RECTO_MONKEY_EVENTS";
 const A_FRAME: usize = 10;
 const KEYS: &str = "fh123imvgsok[]x,.<>90rbznptcjlu+-";
 
-fn place(random: &mut StdRng) -> Vec2 {
+fn place(random: &mut Random) -> Vec2 {
     let [width, height] = SIZE.map(|side| side as f32);
     match random.random_range(0..50) {
         // Beyond the glass, and nonsense.
@@ -38,7 +38,7 @@ fn place(random: &mut StdRng) -> Vec2 {
     }
 }
 
-fn event(random: &mut StdRng) -> Option<WindowEvent> {
+fn event(random: &mut Random) -> Option<WindowEvent> {
     let window = Entity::PLACEHOLDER;
     let button = |button, state| {
         WindowEvent::MouseButtonInput(MouseButtonInput {
@@ -103,7 +103,7 @@ fn event(random: &mut StdRng) -> Option<WindowEvent> {
 fn whatever_is_touched_home_is_reached() {
     let asked = std::env::var(EVENTS_ASKED).ok();
     let events = asked.map_or(EVENTS, |count| count.parse().expect("a number of events"));
-    let mut random = StdRng::seed_from_u64(20_261_126);
+    let mut random = Random::seed_from_u64(20_261_126);
     let mut session = Session::new(Manners {
         kiosk: true,
         waits: Some(WAITS),

@@ -14,7 +14,7 @@ use recto::{
     manifest::exhibit::{Exhibit, SideName},
     optics::tier::Tier,
     shot::{Darkroom, Picture},
-    stage::{Arranged, Library, Shown},
+    stage::{Arranged, Library, Shown, Waker},
     visitor::{
         Attract, Doing, Hand, Manners, VisitorPlugin, Waits,
         controls::{Control, Interface, Look, Panel, Preset, draw::Controls},
@@ -63,6 +63,7 @@ impl Session {
                 export: None,
                 manners,
             })
+            .insert_resource(Waker(Arc::new(|| {})))
             .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME));
         });
         let mut room = built.unwrap_or_else(|error| panic!("{error}"));
@@ -274,7 +275,7 @@ fn two_visitors_a_palm_and_a_lost_touch_do_not_disturb_each_other() {
     }
     session.frame();
     assert_eq!(session.shown().scene.camera, still.scene.camera, "a palm");
-    session.drag(20, Vec2::new(300.0, 150.0), Vec2::new(360.0, 150.0));
+    session.drag(20, Vec2::new(150.0, 380.0), Vec2::new(210.0, 380.0));
     assert_ne!(session.shown().scene.camera, still.scene.camera);
 }
 

@@ -4,7 +4,7 @@ use accesskit::{Node as Spoken, Role};
 use bevy::{a11y::AccessibilityNode, prelude::*};
 
 use super::{
-    Control, Facts, Interface, Laid, Look, Room, Widget,
+    Control, Interface, Laid, Look, Room, Widget,
     facts::{self, Spoken as Words},
     icons::Icons,
     layout::{self, Item},

@@ -21,7 +21,6 @@ use super::{Interface, Panel};
 use crate::{
     cost,
     manifest::exhibit::Exhibit,
-    maps::decode,
     stage::{Shown, Waker},
 };
 
@@ -41,6 +40,8 @@ pub struct Thumbs {
     /// The exhibit that they are of, and where they are kept.
     of: Option<(Arc<Exhibit>, PathBuf)>,
     at_work: Option<Work>,
+    /// Renders them; without it there are none.
+    program: Option<PathBuf>,
 }
 
 /// A process that renders, which ends with this one.
@@ -55,6 +56,20 @@ impl Drop for Work {
 }
 
 impl Thumbs {
+    /// Rendered by the program that runs.
+    pub fn by_itself() -> Self {
+        let program = env::current_exe().ok();
+        // A program that was replaced while it runs is still its own process's.
+        let program = program.map(|path| match path.exists() {
+            true => path,
+            false => PathBuf::from(ITSELF),
+        });
+        Self {
+            program,
+            ..Self::default()
+        }
+    }
+
     /// The picture of a scene.
     pub fn get(&self, scene: usize) -> Option<Handle<Image>> {
         self.pictures.get(&scene).cloned()
@@ -82,8 +97,9 @@ pub fn gather(
         let folder = folder(&exhibit);
         if let Some(folder) = &folder
             && !is_complete(folder, &exhibit)
+            && let Some(program) = &thumbs.program
         {
-            thumbs.at_work = begin(&exhibit, folder, &waker).ok();
+            thumbs.at_work = begin(program, &exhibit, folder, &waker).ok();
         }
         thumbs.of = folder.map(|folder| (exhibit, folder));
     }
@@ -154,13 +170,8 @@ fn is_complete(folder: &Path, exhibit: &Exhibit) -> bool {
 }
 
 /// Begins to render them; whoever waits is woken by each that is finished.
-fn begin(exhibit: &Exhibit, folder: &Path, waker: &Waker) -> io::Result<Work> {
+fn begin(program: &Path, exhibit: &Exhibit, folder: &Path, waker: &Waker) -> io::Result<Work> {
     fs::create_dir_all(folder)?;
-    let program = env::current_exe()?;
-    let program = match program.exists() {
-        true => program,
-        false => PathBuf::from(ITSELF),
-    };
     let child = Command::new(program)
         .arg("render")
         .arg(&exhibit.manifest)
@@ -191,19 +202,19 @@ fn begin(exhibit: &Exhibit, folder: &Path, waker: &Waker) -> io::Result<Work> {
 }
 
 fn picture(path: &Path) -> Option<Image> {
-    let raster = decode::read(path).ok()?;
-    let [width, height] = [raster.width, raster.height];
-    let mut rgba = Vec::with_capacity(width * height * 4);
-    for y in 0..height {
-        raster.for_each_in_row(y, |_, [r, g, b, _]| {
-            // As it is encoded in the file.
-            let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
-            rgba.extend([byte(r), byte(g), byte(b), 255]);
-        });
+    let file = fs::File::open(path).ok()?;
+    let mut decoder = png::Decoder::new(io::BufReader::new(file));
+    decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().ok()?;
+    let mut rgba = vec![0; reader.output_buffer_size()?];
+    let frame = reader.next_frame(&mut rgba).ok()?;
+    let (width, height) = (frame.width, frame.height);
+    if rgba.len() != (width * height * 4) as usize {
+        return None;
     }
     let size = Extent3d {
-        width: width as u32,
-        height: height as u32,
+        width,
+        height,
         depth_or_array_layers: 1,
     };
     let format = TextureFormat::Rgba8UnormSrgb;

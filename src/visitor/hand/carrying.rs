@@ -49,7 +49,7 @@ impl Hand {
     }
 
     /// Its width over its height.
-    fn aspect(&self) -> f64 {
+    pub(super) fn aspect(&self) -> f64 {
         self.own().aspect(self.picture.aspect)
     }
 
