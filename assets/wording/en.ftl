@@ -62,6 +62,8 @@ cooler = Cooler
 lamp-elevation = { $elevation }° high
 # The direction from which it shines, in degrees anticlockwise from the right.
 lamp-azimuth = from { $azimuth }°
+intensity-times = Brightness × { $times }
+light-table-share = Light table { $share }%
 colour-temperature = { $kelvin } K
 lamp-overhead = lamp overhead
 # $from is one of right, upper-right, top, upper-left, left, lower-left, bottom, lower-right.
@@ -86,6 +88,7 @@ difference = Difference
 flicker = In turns
 glass = Through sheet
 opacity = Strength
+opacity-share = Strength { $share }%
 no-overlay = No layer
 no-state = the sheet itself
 comparing-curtain = curtain

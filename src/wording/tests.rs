@@ -423,3 +423,35 @@ fn no_text_makes_it_panic_or_hang() {
         })
         .expect("no panic");
 }
+
+/// The literal ids that the program's own sources ask for.
+fn asked_for() -> BTreeSet<String> {
+    fn collect(folder: &Path, ids: &mut BTreeSet<String>) {
+        for entry in fs::read_dir(folder).expect("a folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                collect(&path, ids);
+            } else if let Ok(text) = fs::read_to_string(&path) {
+                for asks in ["spoken.say(\"", "spoken.fill(\""] {
+                    for rest in text.split(asks).skip(1) {
+                        ids.extend(rest.split('"').next().map(str::to_owned));
+                    }
+                }
+            }
+        }
+    }
+    let mut ids = BTreeSet::new();
+    collect(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut ids);
+    ids
+}
+
+#[test]
+fn what_the_program_asks_for_is_a_message() {
+    let (known, asked) = (ids(), asked_for());
+    assert!(asked.len() > 10, "{asked:?}");
+    let unknown: Vec<String> = asked
+        .into_iter()
+        .filter(|id| !known.contains(&id.as_str()))
+        .collect();
+    assert!(unknown.is_empty(), "{unknown:?}");
+}
