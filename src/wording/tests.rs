@@ -447,11 +447,50 @@ fn asked_for() -> BTreeSet<String> {
 
 #[test]
 fn what_the_program_asks_for_is_a_message() {
-    let (known, asked) = (ids(), asked_for());
+    let (known, mut asked) = (ids(), asked_for());
+    asked.extend(KEYS.iter().map(|(_, what)| (*what).to_owned()));
+    let words = KEYS
+        .iter()
+        .map(|(keys, _)| *keys)
+        .filter(|keys| keys.starts_with("keys-"));
+    asked.extend(words.map(str::to_owned));
     assert!(asked.len() > 10, "{asked:?}");
     let unknown: Vec<String> = asked
         .into_iter()
         .filter(|id| !known.contains(&id.as_str()))
         .collect();
     assert!(unknown.is_empty(), "{unknown:?}");
+}
+
+#[test]
+fn every_quantity_that_a_reading_names_has_a_wording() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/readings");
+    let named = |file: &str, call: &str| -> Vec<String> {
+        let text = fs::read_to_string(src.join(file)).expect("a source");
+        let literals = text.split(call).skip(1);
+        literals
+            .filter_map(|rest| rest.split('"').next().map(str::to_owned))
+            .collect()
+    };
+    let mut names = Vec::new();
+    for file in ["mod.rs", "relief.rs", "stroke.rs", "colour.rs"] {
+        for call in ["Value::new(\"", "Value::as_known(\""] {
+            names.extend(named(file, call));
+        }
+    }
+    names.extend(
+        named("lines.rs", "\"spacing ")
+            .iter()
+            .map(|name| format!("spacing {name}")),
+    );
+    names.extend(
+        named("lines.rs", "\"direction ")
+            .iter()
+            .map(|name| format!("direction {name}")),
+    );
+    assert!(names.len() > 10, "{names:?}");
+    for name in names {
+        let id = quantity(&name).unwrap_or_else(|| panic!("{name} has no wording"));
+        assert!(ids().contains(&id), "{id}");
+    }
 }
