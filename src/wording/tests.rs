@@ -122,7 +122,7 @@ fn countdowns_have_the_plurals_of_their_language() {
     let wordings = Wordings::shipped();
     let say = |tag: &str, seconds: u32| {
         let text = wordings.say(tag, "countdown", &[("seconds", seconds.into())]);
-        text.replace(['\u{2068}', '\u{2069}'], "")
+        text.replace(['\u{200f}', '\u{2068}', '\u{2069}'], "")
     };
     // CLDR: zero 0, one 1, two 2, few 3–10, many 11–99, other 100–102.
     for (seconds, end) in [
