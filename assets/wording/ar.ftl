@@ -57,6 +57,8 @@ warmer = أدفأ
 cooler = أبرد
 lamp-elevation = الارتفاع { $elevation }°
 lamp-azimuth = الاتجاه { $azimuth }°
+intensity-times = السطوع × { $times }
+light-table-share = طاولة ضوئية { $share }٪
 colour-temperature = { $kelvin } كلفن
 lamp-overhead = المصباح فوق الورقة مباشرة
 lamp-place = المصباح على ارتفاع { $elevation }°، { $from ->
@@ -80,6 +82,7 @@ difference = الفرق
 flicker = بالتناوب
 glass = شفافية
 opacity = الشدة
+opacity-share = الشدة { $share }٪
 no-overlay = بلا طبقة
 no-state = الورقة نفسها
 comparing-curtain = ستارة
@@ -155,3 +158,71 @@ staff-restart = إعادة التشغيل
 staff-next-exhibit = المعرض التالي
 staff-hours-off = إبقاء العرض مفتوحًا
 staff-status = الحالة
+
+## قراءات
+
+reading = { $quantity }: { $value }
+reading-none = { $quantity }: لا يوجد
+reading-waiting = جارٍ القياس…
+reading-nothing = لا شيء يُقاس هنا
+quantity-length = الطول
+quantity-area = المساحة
+quantity-perimeter = المحيط
+quantity-angle = الزاوية
+quantity-width = العرض
+quantity-height = الارتفاع
+quantity-roughness = الخشونة
+quantity-trend = الميل
+quantity-laid-spacing = المسافة بين الخطوط الرفيعة
+quantity-laid-direction = اتجاه الخطوط الرفيعة
+quantity-chain-spacing = المسافة بين خطوط السلسلة
+quantity-chain-direction = اتجاه خطوط السلسلة
+quantity-difference = الفرق ΔE00
+
+## إشعارات
+
+saved = حُفظ كمشهد { $name }
+not-saved = لم يُحفظ
+link-printed = يوجد رابط في الطرفية
+exporting = جارٍ التصدير إلى { $file }…
+exported = صُدّر: { $file }
+not-exported = لم يُصدّر
+
+## لوحة المفاتيح والفأرة
+
+keys-drag = السحب
+keys-wheel = العجلة، + −
+keys-double-click = نقرة مزدوجة
+keys-arrows = الأسهم
+keys-lamp = السحب بالزر الأيمن، L + السحب، Shift + الأسهم
+key-turn = تدوير الورقة، وتحريكها عند التكبير
+key-zoom = أقرب، أبعد
+key-true-size = الحجم الحقيقي والعودة
+key-move = التحريك عند التكبير
+key-flip = قلب الورقة
+key-lamp = تحريك المصباح
+key-presets = المصباح من فوق، بزاوية 45°، مائلًا
+key-state = الحالة التالية، السابقة
+key-overlays = الطبقات: لا شيء، واحدة واحدة، الكل
+key-opacity = طبقات أخفت، أقوى
+key-category = الفئة التالية وحدها، السابقة
+key-compare = المقارنة التالية، السابقة
+key-share = تحريك الستارة، مزج أكثر أو أقل
+key-angle = تدوير الستارة، عدسة أكبر، ΔE00 أو الضوء
+key-through = ضوء أقل، أكثر عبر الورقة
+key-enhance = التضاريس فقط، أشد، التباين، أوضح
+key-scene = المشهد التالي، السابق
+key-home = المشهد كما كان
+key-hotspots = التفاصيل: نقرة للفتح، نقرتان للذهاب إليها
+key-next-hotspot = التفصيل التالي، السابق، إلى مشهده
+key-next-control = الأداة التالية، السابقة، استعمالها
+key-controls = أدوات التحكم
+key-measure = أداة القياس التالية، السابقة: نقرة لوضعها
+key-end-path = إنهاء المسار، التراجع عن نقطة أو قياس
+key-under = ما تحت المؤشر
+key-save = حفظ المشهد
+key-link = إظهار رابط إلى المشهد
+key-export = تصدير شكل، أو ضوئه بصيغة EXR
+key-tier = درجة الدقة التالية، السابقة
+key-caption = الشرح
+key-escape = ملء الشاشة، إبعاد، إغلاق أو خروج

@@ -57,6 +57,8 @@ warmer = Wärmer
 cooler = Kühler
 lamp-elevation = { $elevation }° hoch
 lamp-azimuth = aus { $azimuth }°
+intensity-times = Helligkeit × { $times }
+light-table-share = Leuchttisch { $share } %
 colour-temperature = { $kelvin } K
 lamp-overhead = Lampe senkrecht darüber
 lamp-place = Lampe { $elevation }° hoch, { $from ->
@@ -80,6 +82,7 @@ difference = Unterschied
 flicker = Im Wechsel
 glass = Durchsicht
 opacity = Stärke
+opacity-share = Stärke { $share } %
 no-overlay = Keine Ebene
 no-state = das Blatt selbst
 comparing-curtain = Vorhang
@@ -147,3 +150,71 @@ staff-restart = Neu starten
 staff-next-exhibit = Nächste Ausstellung
 staff-hours-off = Jetzt geöffnet lassen
 staff-status = Zustand
+
+## Messwerte
+
+reading = { $quantity }: { $value }
+reading-none = { $quantity }: keine Angabe
+reading-waiting = wird gemessen …
+reading-nothing = hier ist nichts zu messen
+quantity-length = Länge
+quantity-area = Fläche
+quantity-perimeter = Umfang
+quantity-angle = Winkel
+quantity-width = Breite
+quantity-height = Höhe
+quantity-roughness = Rauheit
+quantity-trend = Neigung
+quantity-laid-spacing = Abstand der Ripplinien
+quantity-laid-direction = Richtung der Ripplinien
+quantity-chain-spacing = Abstand der Kettlinien
+quantity-chain-direction = Richtung der Kettlinien
+quantity-difference = Unterschied ΔE00
+
+## Meldungen
+
+saved = als Ansicht { $name } gespeichert
+not-saved = nicht gespeichert
+link-printed = ein Verweis steht im Terminal
+exporting = wird nach { $file } ausgegeben …
+exported = ausgegeben: { $file }
+not-exported = nicht ausgegeben
+
+## Tastatur und Maus
+
+keys-drag = ziehen
+keys-wheel = Mausrad, + −
+keys-double-click = Doppelklick
+keys-arrows = Pfeiltasten
+keys-lamp = rechts ziehen, L + ziehen, Umschalt + Pfeile
+key-turn = das Blatt drehen, von nahem verschieben
+key-zoom = näher, weiter weg
+key-true-size = Originalgröße und zurück
+key-move = von nahem verschieben
+key-flip = das Blatt wenden
+key-lamp = die Lampe bewegen
+key-presets = Lampe senkrecht, unter 45°, streifend
+key-state = nächster Zustand, zurück
+key-overlays = Ebenen: keine, jede, alle
+key-opacity = Ebenen schwächer, stärker
+key-category = nächste Kategorie allein, zurück
+key-compare = nächster Vergleich, zurück
+key-share = den Vorhang bewegen, mehr oder weniger überblenden
+key-angle = den Vorhang drehen, größere Lupe, ΔE00 oder Licht
+key-through = weniger, mehr Licht durch das Blatt
+key-enhance = nur Relief, steiler, Kontrast, schärfer
+key-scene = nächste Ansicht, zurück
+key-home = die Ansicht, wie sie war
+key-hotspots = Details: ein Klick öffnet, zwei führen hin
+key-next-hotspot = nächstes Detail, zurück, zu seiner Ansicht
+key-next-control = nächstes Bedienelement, zurück, betätigen
+key-controls = Bedienung
+key-measure = nächstes Messwerkzeug, zurück: ein Klick legt es an
+key-end-path = einen Weg beenden, Stelle oder Messung zurücknehmen
+key-under = was unter dem Zeiger liegt
+key-save = die Ansicht speichern
+key-link = einen Verweis auf die Ansicht ausgeben
+key-export = eine Abbildung ausgeben, oder ihr Licht als EXR
+key-tier = nächste Genauigkeitsstufe, zurück
+key-caption = Bildtext
+key-escape = Vollbild, weglegen, schließen oder beenden

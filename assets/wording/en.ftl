@@ -62,6 +62,8 @@ cooler = Cooler
 lamp-elevation = { $elevation }° high
 # The direction from which it shines, in degrees anticlockwise from the right.
 lamp-azimuth = from { $azimuth }°
+intensity-times = Brightness × { $times }
+light-table-share = Light table { $share }%
 colour-temperature = { $kelvin } K
 lamp-overhead = lamp overhead
 # $from is one of right, upper-right, top, upper-left, left, lower-left, bottom, lower-right.
@@ -86,6 +88,7 @@ difference = Difference
 flicker = In turns
 glass = Through sheet
 opacity = Strength
+opacity-share = Strength { $share }%
 no-overlay = No layer
 no-state = the sheet itself
 comparing-curtain = curtain
@@ -154,3 +157,71 @@ staff-restart = Restart
 staff-next-exhibit = Next exhibit
 staff-hours-off = Stay open now
 staff-status = Status
+
+## Readings
+
+reading = { $quantity }: { $value }
+reading-none = { $quantity }: none
+reading-waiting = measuring …
+reading-nothing = nothing to measure here
+quantity-length = length
+quantity-area = area
+quantity-perimeter = perimeter
+quantity-angle = angle
+quantity-width = width
+quantity-height = height
+quantity-roughness = roughness
+quantity-trend = slope
+quantity-laid-spacing = spacing of laid lines
+quantity-laid-direction = direction of laid lines
+quantity-chain-spacing = spacing of chain lines
+quantity-chain-direction = direction of chain lines
+quantity-difference = difference ΔE00
+
+## Notices
+
+saved = saved as view { $name }
+not-saved = not saved
+link-printed = a link is in the terminal
+exporting = exporting to { $file } …
+exported = exported: { $file }
+not-exported = not exported
+
+## Keyboard and mouse
+
+keys-drag = drag
+keys-wheel = wheel, + −
+keys-double-click = double click
+keys-arrows = arrows
+keys-lamp = right drag, L + drag, Shift + arrows
+key-turn = turn the sheet; move it when zoomed in
+key-zoom = closer, further
+key-true-size = true size and back
+key-move = move when zoomed in
+key-flip = turn the sheet over
+key-lamp = move the lamp
+key-presets = lamp overhead, at 45°, raking
+key-state = next state, back
+key-overlays = layers: none, each, all
+key-opacity = fainter, stronger layers
+key-category = next category alone, back
+key-compare = next comparison, back
+key-share = move the curtain, more or less of a blend
+key-angle = turn the curtain, larger loupe, ΔE00 or light
+key-through = less, more light through the sheet
+key-enhance = relief only, steeper, contrast, sharper
+key-scene = next view, back
+key-home = the view as it was
+key-hotspots = details: click on one to open it, twice to go there
+key-next-hotspot = next detail, back, to its view
+key-next-control = next control, back, touch it
+key-controls = controls
+key-measure = next measuring tool, back: click to lay it
+key-end-path = end a path, take back a place or a measurement
+key-under = what lies under the pointer
+key-save = save the view
+key-link = print a link to the view
+key-export = export a figure, or its light as EXR
+key-tier = next tier of accuracy, back
+key-caption = caption
+key-escape = full screen, put away, close or quit

@@ -57,6 +57,8 @@ warmer = Más cálida
 cooler = Más fría
 lamp-elevation = altura { $elevation }°
 lamp-azimuth = dirección { $azimuth }°
+intensity-times = Brillo × { $times }
+light-table-share = Mesa de luz { $share } %
 colour-temperature = { $kelvin } K
 lamp-overhead = lámpara cenital
 lamp-place = lámpara a { $elevation }° de altura, { $from ->
@@ -80,6 +82,7 @@ difference = Diferencia
 flicker = Por turnos
 glass = Transparencia
 opacity = Intensidad
+opacity-share = Intensidad { $share } %
 no-overlay = Ninguna capa
 no-state = la hoja misma
 comparing-curtain = cortina
@@ -149,3 +152,71 @@ staff-restart = Reiniciar
 staff-next-exhibit = Exposición siguiente
 staff-hours-off = Seguir abierto
 staff-status = Estado
+
+## Medidas
+
+reading = { $quantity }: { $value }
+reading-none = { $quantity }: ninguno
+reading-waiting = midiendo…
+reading-nothing = aquí no hay nada que medir
+quantity-length = longitud
+quantity-area = superficie
+quantity-perimeter = perímetro
+quantity-angle = ángulo
+quantity-width = anchura
+quantity-height = altura
+quantity-roughness = rugosidad
+quantity-trend = pendiente
+quantity-laid-spacing = distancia entre puntizones
+quantity-laid-direction = dirección de los puntizones
+quantity-chain-spacing = distancia entre corondeles
+quantity-chain-direction = dirección de los corondeles
+quantity-difference = diferencia ΔE00
+
+## Avisos
+
+saved = guardada como vista { $name }
+not-saved = no guardada
+link-printed = hay un enlace en el terminal
+exporting = exportando a { $file }…
+exported = exportado: { $file }
+not-exported = no exportado
+
+## Teclado y ratón
+
+keys-drag = arrastrar
+keys-wheel = rueda, + −
+keys-double-click = doble clic
+keys-arrows = flechas
+keys-lamp = arrastrar con el derecho, L + arrastrar, Mayús + flechas
+key-turn = girar la hoja; moverla de cerca
+key-zoom = más cerca, más lejos
+key-true-size = tamaño real y vuelta
+key-move = mover de cerca
+key-flip = dar la vuelta a la hoja
+key-lamp = mover la lámpara
+key-presets = lámpara cenital, a 45°, rasante
+key-state = estado siguiente, anterior
+key-overlays = capas: ninguna, cada una, todas
+key-opacity = capas más tenues, más fuertes
+key-category = categoría siguiente sola, anterior
+key-compare = comparación siguiente, anterior
+key-share = mover la cortina, más o menos fundido
+key-angle = girar la cortina, lupa más grande, ΔE00 o luz
+key-through = menos, más luz a través de la hoja
+key-enhance = solo relieve, más marcado, contraste, más nítido
+key-scene = vista siguiente, anterior
+key-home = la vista como estaba
+key-hotspots = detalles: un clic lo abre, dos llevan allí
+key-next-hotspot = detalle siguiente, anterior, a su vista
+key-next-control = mando siguiente, anterior, pulsarlo
+key-controls = mandos
+key-measure = herramienta de medida siguiente, anterior: un clic la coloca
+key-end-path = terminar un recorrido, deshacer un punto o una medida
+key-under = qué hay bajo el puntero
+key-save = guardar la vista
+key-link = mostrar un enlace a la vista
+key-export = exportar una figura, o su luz en EXR
+key-tier = nivel de exactitud siguiente, anterior
+key-caption = cartela
+key-escape = pantalla completa, guardar, cerrar o salir

@@ -57,6 +57,8 @@ warmer = Plus chaud
 cooler = Plus froid
 lamp-elevation = hauteur { $elevation }°
 lamp-azimuth = direction { $azimuth }°
+intensity-times = Luminosité × { $times }
+light-table-share = Rétroéclairage { $share } %
 colour-temperature = { $kelvin } K
 lamp-overhead = lampe au zénith
 lamp-place = lampe à { $elevation }° de hauteur, { $from ->
@@ -80,6 +82,7 @@ difference = Différence
 flicker = Tour à tour
 glass = Transparence
 opacity = Intensité
+opacity-share = Intensité { $share } %
 no-overlay = Aucun calque
 no-state = la feuille elle-même
 comparing-curtain = rideau
@@ -149,3 +152,71 @@ staff-restart = Redémarrer
 staff-next-exhibit = Exposition suivante
 staff-hours-off = Rester ouvert
 staff-status = État
+
+## Mesures
+
+reading = { $quantity } : { $value }
+reading-none = { $quantity } : aucun
+reading-waiting = mesure en cours…
+reading-nothing = rien à mesurer ici
+quantity-length = longueur
+quantity-area = surface
+quantity-perimeter = périmètre
+quantity-angle = angle
+quantity-width = largeur
+quantity-height = hauteur
+quantity-roughness = rugosité
+quantity-trend = pente
+quantity-laid-spacing = écart des vergeures
+quantity-laid-direction = direction des vergeures
+quantity-chain-spacing = écart des pontuseaux
+quantity-chain-direction = direction des pontuseaux
+quantity-difference = différence ΔE00
+
+## Avis
+
+saved = enregistré comme vue { $name }
+not-saved = non enregistré
+link-printed = un lien est dans le terminal
+exporting = export vers { $file }…
+exported = exporté : { $file }
+not-exported = non exporté
+
+## Clavier et souris
+
+keys-drag = glisser
+keys-wheel = molette, + −
+keys-double-click = double-clic
+keys-arrows = flèches
+keys-lamp = glisser à droite, L + glisser, Maj + flèches
+key-turn = tourner la feuille ; la déplacer de près
+key-zoom = plus près, plus loin
+key-true-size = taille réelle et retour
+key-move = déplacer de près
+key-flip = retourner la feuille
+key-lamp = déplacer la lampe
+key-presets = lampe zénithale, à 45°, rasante
+key-state = état suivant, précédent
+key-overlays = calques : aucun, chacun, tous
+key-opacity = calques plus pâles, plus forts
+key-category = catégorie suivante seule, précédente
+key-compare = comparaison suivante, précédente
+key-share = déplacer le rideau, doser le fondu
+key-angle = tourner le rideau, agrandir la loupe, ΔE00 ou lumière
+key-through = moins, plus de lumière à travers la feuille
+key-enhance = relief seul, accentué, contraste, plus net
+key-scene = vue suivante, précédente
+key-home = la vue telle qu’elle était
+key-hotspots = détails : un clic pour ouvrir, deux pour y aller
+key-next-hotspot = détail suivant, précédent, vers sa vue
+key-next-control = commande suivante, précédente, l’actionner
+key-controls = commandes
+key-measure = outil de mesure suivant, précédent : un clic le pose
+key-end-path = finir un tracé, annuler un point ou une mesure
+key-under = ce qui est sous le pointeur
+key-save = enregistrer la vue
+key-link = afficher un lien vers la vue
+key-export = exporter une figure, ou sa lumière en EXR
+key-tier = niveau de précision suivant, précédent
+key-caption = cartel
+key-escape = plein écran, ranger, fermer ou quitter

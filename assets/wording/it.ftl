@@ -57,6 +57,8 @@ warmer = Più calda
 cooler = Più fredda
 lamp-elevation = altezza { $elevation }°
 lamp-azimuth = da { $azimuth }°
+intensity-times = Luminosità × { $times }
+light-table-share = Controluce { $share }%
 colour-temperature = { $kelvin } K
 lamp-overhead = lampada a perpendicolo
 lamp-place = lampada a { $elevation }° di altezza, { $from ->
@@ -80,6 +82,7 @@ difference = Differenza
 flicker = Alternati
 glass = In trasparenza
 opacity = Intensità
+opacity-share = Intensità { $share }%
 no-overlay = Nessun livello
 no-state = il foglio così com’è
 comparing-curtain = sipario
@@ -149,3 +152,71 @@ staff-restart = Riavvia
 staff-next-exhibit = Mostra successiva
 staff-hours-off = Lascia aperto ora
 staff-status = Stato
+
+## Misure
+
+reading = { $quantity }: { $value }
+reading-none = { $quantity }: nessuno
+reading-waiting = misura in corso…
+reading-nothing = qui non c’è nulla da misurare
+quantity-length = lunghezza
+quantity-area = area
+quantity-perimeter = perimetro
+quantity-angle = angolo
+quantity-width = larghezza
+quantity-height = altezza
+quantity-roughness = rugosità
+quantity-trend = pendenza
+quantity-laid-spacing = passo delle vergelle
+quantity-laid-direction = direzione delle vergelle
+quantity-chain-spacing = passo dei filoni
+quantity-chain-direction = direzione dei filoni
+quantity-difference = differenza ΔE00
+
+## Avvisi
+
+saved = salvata come veduta { $name }
+not-saved = non salvata
+link-printed = un collegamento è nel terminale
+exporting = esportazione in { $file }…
+exported = esportato: { $file }
+not-exported = non esportato
+
+## Tastiera e mouse
+
+keys-drag = trascinare
+keys-wheel = rotella, + −
+keys-double-click = doppio clic
+keys-arrows = frecce
+keys-lamp = trascinare col destro, L + trascinare, Maiusc + frecce
+key-turn = girare il foglio; spostarlo da vicino
+key-zoom = più vicino, più lontano
+key-true-size = formato reale e ritorno
+key-move = spostare da vicino
+key-flip = girare il foglio
+key-lamp = spostare la lampada
+key-presets = lampada zenitale, a 45°, radente
+key-state = stato successivo, precedente
+key-overlays = livelli: nessuno, uno alla volta, tutti
+key-opacity = livelli più deboli, più forti
+key-category = categoria successiva da sola, precedente
+key-compare = confronto successivo, precedente
+key-share = spostare il sipario, più o meno dissolvenza
+key-angle = girare il sipario, lente più grande, ΔE00 o luce
+key-through = meno, più luce attraverso il foglio
+key-enhance = solo rilievo, più ripido, contrasto, più nitido
+key-scene = veduta successiva, precedente
+key-home = la veduta com’era
+key-hotspots = dettagli: un clic per aprirlo, due per andarci
+key-next-hotspot = dettaglio successivo, precedente, alla sua veduta
+key-next-control = comando successivo, precedente, usarlo
+key-controls = comandi
+key-measure = strumento di misura successivo, precedente: clic per posarlo
+key-end-path = chiudere un percorso, annullare un punto o una misura
+key-under = che cosa c’è sotto il puntatore
+key-save = salvare la veduta
+key-link = stampare un collegamento alla veduta
+key-export = esportare una figura, o la sua luce in EXR
+key-tier = grado di accuratezza successivo, precedente
+key-caption = didascalia
+key-escape = schermo intero, riporre, chiudere o uscire

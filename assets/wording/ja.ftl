@@ -57,6 +57,8 @@ warmer = 暖色へ
 cooler = 寒色へ
 lamp-elevation = 高さ{ $elevation }°
 lamp-azimuth = 方位{ $azimuth }°
+intensity-times = 明るさ × { $times }
+light-table-share = 透過光 { $share }%
 colour-temperature = { $kelvin } K
 lamp-overhead = ランプは真上
 lamp-place = ランプの高さ{ $elevation }°、{ $from ->
@@ -80,6 +82,7 @@ difference = 差
 flicker = 交互
 glass = 透かし見
 opacity = 濃さ
+opacity-share = 濃さ { $share }%
 no-overlay = レイヤーなし
 no-state = 紙そのもの
 comparing-curtain = カーテン
@@ -141,3 +144,71 @@ staff-restart = 再起動
 staff-next-exhibit = 次の展示
 staff-hours-off = このまま開ける
 staff-status = 状態
+
+## 測定値
+
+reading = { $quantity }：{ $value }
+reading-none = { $quantity }：なし
+reading-waiting = 測定中…
+reading-nothing = ここに測れるものはありません
+quantity-length = 長さ
+quantity-area = 面積
+quantity-perimeter = 周の長さ
+quantity-angle = 角度
+quantity-width = 幅
+quantity-height = 高さ
+quantity-roughness = 粗さ
+quantity-trend = 傾き
+quantity-laid-spacing = 簀の目の間隔
+quantity-laid-direction = 簀の目の向き
+quantity-chain-spacing = 鎖線の間隔
+quantity-chain-direction = 鎖線の向き
+quantity-difference = 色差 ΔE00
+
+## お知らせ
+
+saved = 見どころ { $name } として保存しました
+not-saved = 保存できませんでした
+link-printed = リンクを端末に表示しました
+exporting = { $file } に書き出し中…
+exported = 書き出しました：{ $file }
+not-exported = 書き出せませんでした
+
+## キーボードとマウス
+
+keys-drag = ドラッグ
+keys-wheel = ホイール、+ −
+keys-double-click = ダブルクリック
+keys-arrows = 矢印キー
+keys-lamp = 右ドラッグ、L + ドラッグ、Shift + 矢印
+key-turn = 紙を傾ける。近づけたときは動かす
+key-zoom = 近づける、遠ざける
+key-true-size = 原寸大と元の大きさ
+key-move = 近づけたときに動かす
+key-flip = 紙を裏返す
+key-lamp = ランプを動かす
+key-presets = ランプを真上、45°、斜光に
+key-state = 次の状態、前の状態
+key-overlays = レイヤー：なし、一つずつ、すべて
+key-opacity = レイヤーを薄く、濃く
+key-category = 次の分類だけ、前の分類だけ
+key-compare = 次の比較、前の比較
+key-share = カーテンを動かす、混ぜ方を変える
+key-angle = カーテンを回す、ルーペを大きく、ΔE00 か光
+key-through = 紙を通る光を弱く、強く
+key-enhance = 起伏だけ、起伏を強く、コントラスト、鮮明に
+key-scene = 次の見どころ、前の見どころ
+key-home = 見どころを元に戻す
+key-hotspots = 細部：クリックで開き、もう一度で移動
+key-next-hotspot = 次の細部、前の細部、その見どころへ
+key-next-control = 次の操作、前の操作、実行
+key-controls = 操作ボタン
+key-measure = 次の計測道具、前の道具：クリックで置く
+key-end-path = 道のりを終える、点や測定を取り消す
+key-under = ポインターの下にあるもの
+key-save = 見どころを保存
+key-link = 見どころへのリンクを表示
+key-export = 図を書き出す、または光を EXR で
+key-tier = 次の精度、前の精度
+key-caption = 解説
+key-escape = 全画面、片付ける、閉じる、終了

@@ -82,3 +82,60 @@ pub const BUTTONS: [&str; 63] = [
 /// Longest label of a button in characters, combining marks not counted; a full-width one counts
 /// as two.
 pub const BUTTON_LETTERS: usize = 14;
+
+/// Keys and what they do, for the list of them: each by the id of a wording, or as it is printed on
+/// the key, which [`super::Wordings::label`] says as it is.
+pub const KEYS: [(&str, &str); 31] = [
+    ("keys-drag", "key-turn"),
+    ("keys-wheel", "key-zoom"),
+    ("keys-double-click", "key-true-size"),
+    ("keys-arrows", "key-move"),
+    ("F", "key-flip"),
+    ("keys-lamp", "key-lamp"),
+    ("1  2  3", "key-presets"),
+    ("S, Shift + S", "key-state"),
+    ("O", "key-overlays"),
+    ("[  ]", "key-opacity"),
+    ("G, Shift + G", "key-category"),
+    ("X, Shift + X", "key-compare"),
+    (",  .", "key-share"),
+    ("<  >", "key-angle"),
+    ("9  0", "key-through"),
+    ("R, Shift + R, B, Z", "key-enhance"),
+    ("N, P", "key-scene"),
+    ("H", "key-home"),
+    ("I", "key-hotspots"),
+    ("J, Shift + J, Enter", "key-next-hotspot"),
+    ("Tab, Shift + Tab, Space", "key-next-control"),
+    ("U", "key-controls"),
+    ("M, Shift + M", "key-measure"),
+    ("Enter, Backspace", "key-end-path"),
+    ("V", "key-under"),
+    ("W, Ctrl + S", "key-save"),
+    ("K", "key-link"),
+    ("E, Shift + E", "key-export"),
+    ("T, Shift + T", "key-tier"),
+    ("C", "key-caption"),
+    ("F11, Esc", "key-escape"),
+];
+
+/// The wording of a quantity that a reading names.
+pub fn quantity(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "length" => "quantity-length",
+        "area" => "quantity-area",
+        "perimeter" => "quantity-perimeter",
+        "angle" => "quantity-angle",
+        "width" => "quantity-width",
+        "height without the trend (Pt)" => "quantity-height",
+        "roughness without the trend (Pq)" => "quantity-roughness",
+        "trend" => "quantity-trend",
+        "spacing of laid lines" => "quantity-laid-spacing",
+        "direction of laid lines" => "quantity-laid-direction",
+        "spacing of chain lines" => "quantity-chain-spacing",
+        "direction of chain lines" => "quantity-chain-direction",
+        "ΔE00" => "quantity-difference",
+        // Symbols of CIELAB are the same everywhere.
+        _ => return None,
+    })
+}

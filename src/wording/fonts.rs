@@ -257,14 +257,19 @@ impl Fonts {
     pub fn fallbacks(&self) -> Vec<(Script, Vec<&str>)> {
         let mut fallbacks = Vec::new();
         for (script, _, ranges) in SCRIPTS {
-            let mut families: Vec<&str> = Vec::new();
-            for face in &self.faces {
-                // A letter or two of a script are not the script.
-                let sampled = ranges
+            let sampled = || {
+                ranges
                     .iter()
-                    .flat_map(|(from, to)| (*from..=*to).step_by(7));
-                let has_some = sampled.filter(|c| face.has(*c)).count() > 3;
-                if has_some && !families.contains(&face.family.as_str()) {
+                    .flat_map(|(from, to)| (*from..=*to).step_by(7))
+            };
+            let count = |face: &Face| sampled().filter(|c| face.has(*c)).count();
+            let counts: Vec<usize> = self.faces.iter().map(count).collect();
+            let most = counts.iter().copied().max().unwrap_or_default();
+            let mut families: Vec<&str> = Vec::new();
+            for (face, count) in self.faces.iter().zip(counts) {
+                // A letter or two of a script are not the script.
+                let has_it = count > 3 && count * 10 >= most;
+                if has_it && !families.contains(&face.family.as_str()) {
                     families.push(&face.family);
                 }
             }

@@ -70,6 +70,7 @@ fn laid(fonts: &Fonts, language: &str, text: &str) -> Vec<(u32, usize, bool)> {
 #[test]
 fn every_wording_is_drawn_in_every_language() {
     let (wordings, fonts) = found();
+    let mut from_right = 0;
     for language in wordings.languages() {
         for message in source::messages(super::super::catalogue::SHIPPED[0].1) {
             for number in [1, 2, 3, 11, 100] {
@@ -96,10 +97,8 @@ fn every_wording_is_drawn_in_every_language() {
                     let places: Vec<usize> =
                         glyphs.iter().filter(arabic).map(|(_, at, _)| *at).collect();
                     // What comes first in the text stands furthest to the right.
-                    assert!(
-                        places.len() > 1 && places.is_sorted_by(|a, b| a >= b),
-                        "{text}: {places:?}"
-                    );
+                    assert!(places.is_sorted_by(|a, b| a >= b), "{text}: {places:?}");
+                    from_right += usize::from(places.len() > 1);
                 }
                 if message.variables.is_empty() {
                     break;
@@ -107,6 +106,10 @@ fn every_wording_is_drawn_in_every_language() {
             }
         }
     }
+    assert!(
+        from_right > 100,
+        "{from_right} wordings were seen from right to left"
+    );
 }
 
 #[test]
@@ -184,4 +187,38 @@ fn the_installations_fonts_come_first_and_files_that_are_none_are_told() {
         let fonts = Fonts::find_in(&letters, Some(folder.path()), &[]);
         assert!(!fonts.faces().is_empty());
     }
+}
+
+#[test]
+fn a_line_from_the_right_begins_at_the_right_also_where_all_of_it_is_filled_in() {
+    let (wordings, fonts) = found();
+    let args = [("quantity", "الطول".into()), ("value", "12 mm".into())];
+    let text = wordings.say("ar", "reading", &args);
+    let places: Vec<usize> = laid(&fonts, "ar", &text)
+        .iter()
+        .map(|(_, at, _)| *at)
+        .collect();
+    let (name, value) = (
+        text.find('ا').expect("a letter"),
+        text.find("12").expect("digits"),
+    );
+    let of = |byte: usize| places.iter().position(|at| *at == byte).expect("a glyph");
+    assert!(of(value) < of(name), "{places:?}");
+}
+
+#[test]
+fn each_script_is_asked_of_families_that_have_it() {
+    let (_, fonts) = found();
+    let of = |script: &[u8; 4]| {
+        let script = Script::from_bytes(*script);
+        let fallbacks = fonts.fallbacks();
+        let found = fallbacks.into_iter().find(|(other, _)| *other == script);
+        found.map(|(_, families)| families.len())
+    };
+    let japanese = fonts
+        .for_language("ja")
+        .filter(|face| face.has('紙'))
+        .count();
+    assert_eq!(of(b"Hani"), Some(japanese));
+    assert!(of(b"Arab").is_some() && of(b"Hira").is_some() && of(b"Kana").is_some());
 }

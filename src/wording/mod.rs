@@ -36,6 +36,9 @@ pub const FALLBACK: &str = "en";
 /// A language's name in itself; the one message that no other language stands in for.
 const LANGUAGE_NAME: &str = "language-name";
 
+/// Begins a line from the right (RIGHT-TO-LEFT MARK).
+const RIGHT_TO_LEFT: char = '\u{200f}';
+
 /// Which way a language is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Direction {
@@ -277,10 +280,16 @@ impl Language {
             .iter()
             .map(|(name, value)| (*name, value.filled()))
             .collect();
+        let pattern = message.value()?;
         let text = self
             .bundle
-            .format_pattern(message.value()?, Some(&args), &mut Vec::new());
-        Some(text.into_owned().into())
+            .format_pattern(pattern, Some(&args), &mut Vec::new());
+        Some(match direction(&self.tag) {
+            // What is filled in says nothing of the line's own direction, and where nothing else
+            // does, the line would be laid from the left.
+            Direction::RightToLeft => format!("{RIGHT_TO_LEFT}{text}").into(),
+            Direction::LeftToRight => text.into_owned().into(),
+        })
     }
 }
 

@@ -122,7 +122,7 @@ fn countdowns_have_the_plurals_of_their_language() {
     let wordings = Wordings::shipped();
     let say = |tag: &str, seconds: u32| {
         let text = wordings.say(tag, "countdown", &[("seconds", seconds.into())]);
-        text.replace(['\u{2068}', '\u{2069}'], "")
+        text.replace(['\u{200f}', '\u{2068}', '\u{2069}'], "")
     };
     // CLDR: zero 0, one 1, two 2, few 3–10, many 11–99, other 100–102.
     for (seconds, end) in [
@@ -422,4 +422,75 @@ fn no_text_makes_it_panic_or_hang() {
             Ok(())
         })
         .expect("no panic");
+}
+
+/// The literal ids that the program's own sources ask for.
+fn asked_for() -> BTreeSet<String> {
+    fn collect(folder: &Path, ids: &mut BTreeSet<String>) {
+        for entry in fs::read_dir(folder).expect("a folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                collect(&path, ids);
+            } else if let Ok(text) = fs::read_to_string(&path) {
+                for asks in ["spoken.say(\"", "spoken.fill(\""] {
+                    for rest in text.split(asks).skip(1) {
+                        ids.extend(rest.split('"').next().map(str::to_owned));
+                    }
+                }
+            }
+        }
+    }
+    let mut ids = BTreeSet::new();
+    collect(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut ids);
+    ids
+}
+
+#[test]
+fn what_the_program_asks_for_is_a_message() {
+    let (known, mut asked) = (ids(), asked_for());
+    asked.extend(KEYS.iter().map(|(_, what)| (*what).to_owned()));
+    let words = KEYS
+        .iter()
+        .map(|(keys, _)| *keys)
+        .filter(|keys| keys.starts_with("keys-"));
+    asked.extend(words.map(str::to_owned));
+    assert!(asked.len() > 10, "{asked:?}");
+    let unknown: Vec<String> = asked
+        .into_iter()
+        .filter(|id| !known.contains(&id.as_str()))
+        .collect();
+    assert!(unknown.is_empty(), "{unknown:?}");
+}
+
+#[test]
+fn every_quantity_that_a_reading_names_has_a_wording() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/readings");
+    let named = |file: &str, call: &str| -> Vec<String> {
+        let text = fs::read_to_string(src.join(file)).expect("a source");
+        let literals = text.split(call).skip(1);
+        literals
+            .filter_map(|rest| rest.split('"').next().map(str::to_owned))
+            .collect()
+    };
+    let mut names = Vec::new();
+    for file in ["mod.rs", "relief.rs", "stroke.rs", "colour.rs"] {
+        for call in ["Value::new(\"", "Value::as_known(\""] {
+            names.extend(named(file, call));
+        }
+    }
+    names.extend(
+        named("lines.rs", "\"spacing ")
+            .iter()
+            .map(|name| format!("spacing {name}")),
+    );
+    names.extend(
+        named("lines.rs", "\"direction ")
+            .iter()
+            .map(|name| format!("direction {name}")),
+    );
+    assert!(names.len() > 10, "{names:?}");
+    for name in names {
+        let id = quantity(&name).unwrap_or_else(|| panic!("{name} has no wording"));
+        assert!(ids().contains(&id), "{id}");
+    }
 }
