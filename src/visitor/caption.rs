@@ -7,7 +7,7 @@ use super::{
     comparing,
     controls::{
         Interface,
-        draw::{Languages, ProgramWords},
+        draw::{Controls, Languages, ProgramWords},
         facts::{self, Spoken},
     },
     hand::Hand,
@@ -106,7 +106,7 @@ pub struct Drawn {
 pub fn draw(
     mut commands: Commands,
     (shown, hand, texts): (Res<Shown>, Res<Hand>, Res<Texts>),
-    (attract, interface): (Res<Attract>, Res<Interface>),
+    (attract, interface, controls): (Res<Attract>, Res<Interface>, Res<Controls>),
     (words, languages): (Res<ProgramWords>, Res<Languages>),
     face: Option<Res<Face>>,
     cameras: Query<(Entity, &TextCamera)>,
@@ -125,7 +125,7 @@ pub fn draw(
     let wanted = Drawn {
         caption: match hand.open_hotspot() {
             Some(hotspot) => hotspot_lines(&shown, hotspot, spoken),
-            None if texts.caption => lines(&shown, &hand, spoken),
+            None if texts.caption && !controls.lists => lines(&shown, &hand, spoken),
             None => Vec::new(),
         }
         .into_iter()

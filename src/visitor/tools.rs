@@ -408,12 +408,13 @@ mod tests {
         };
         let hand = Hand::new(Arc::new(exhibit), 0, Tier::Draft, picture, true);
         let mut app = App::new();
-        app.world_mut().spawn(Window {
-            resolution: (SIZE.x as u32, SIZE.y as u32).into(),
-            ..default()
+        app.insert_resource(Glass {
+            size: SIZE,
+            pixels: SIZE.as_uvec2(),
+            ..Glass::default()
         });
         let mut devices = Devices::default();
-        devices.resize(SIZE);
+        devices.resize(SIZE, 1.0);
         app.insert_resource(hand.shown())
             .insert_resource(Shape::flat(hand.drawing()))
             .insert_resource(hand)
@@ -453,7 +454,12 @@ mod tests {
             delta: None,
         });
         let mut devices = app.world_mut().resource_mut::<Devices>();
-        devices.take(&event, Duration::ZERO, |_| {});
+        let controls = Laid::default();
+        let ground = Ground {
+            controls: &controls,
+            compare: &|_| false,
+        };
+        devices.take(&event, Duration::ZERO, ground, |_| {});
         app.update();
     }
 

@@ -29,6 +29,9 @@ const SHAPE: f32 = 0.75;
 const RINGS: [f32; 2] = [std::f32::consts::FRAC_1_SQRT_2, 0.9986];
 /// The lamp on the dial, of the dial's side.
 const KNOB: f32 = 0.14;
+/// Controls lie on their ground, and both on all texts.
+const UNDER: i32 = 10;
+const OVER: i32 = 11;
 /// What the countdown and the staff's words are larger by.
 const LOUD: f32 = 1.25;
 
@@ -63,13 +66,15 @@ impl Languages {
 pub struct Reach(pub Option<[f32; 2]>);
 
 /// The controls in their places.
-#[derive(Resource, Clone, Debug, Default)]
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct Controls {
     pub laid: Laid,
     /// Height of the text in logical pixels.
     pub text: f32,
     /// From the bottom, what texts keep clear of, in logical pixels.
     pub foot: f32,
+    /// A list lies where the caption is.
+    pub lists: bool,
 }
 
 /// Lays them out.
@@ -113,13 +118,13 @@ pub fn arrange(
         true => 0.0,
         false => laid.foot(&room),
     };
-    if controls.laid != laid || controls.text != room.text || controls.foot != foot {
-        *controls = Controls {
-            laid,
-            text: room.text,
-            foot,
-        };
-    }
+    let wanted = Controls {
+        laid,
+        text: room.text,
+        foot,
+        lists: interface.open.iter().any(|panel| panel.is_list()),
+    };
+    controls.set_if_neq(wanted);
     for mut text in &mut texts {
         if text.foot != foot {
             text.foot = foot;
@@ -239,6 +244,7 @@ pub fn draw(
         commands.spawn((
             Shape,
             UiTargetCamera(camera),
+            GlobalZIndex(UNDER),
             placed(*ground, wanted.text * 0.5),
             BackgroundColor(pen.colours.ground),
         ));
@@ -275,6 +281,10 @@ fn placed(rect: Rect, round: f32) -> Node {
 
 impl Pen<'_> {
     fn words(&self, text: &str, size: f32, colour: Color) -> impl Bundle {
+        self.set(text, size, colour, LineBreak::WordBoundary)
+    }
+
+    fn set(&self, text: &str, size: f32, colour: Color, linebreak: LineBreak) -> impl Bundle {
         (
             Text::new(text),
             TextFont {
@@ -283,7 +293,7 @@ impl Pen<'_> {
                 ..default()
             },
             TextColor(colour),
-            TextLayout::new(Justify::Center, LineBreak::WordBoundary),
+            TextLayout::new(Justify::Center, linebreak),
         )
     }
 
@@ -321,7 +331,7 @@ impl Pen<'_> {
             overflow: Overflow::clip(),
             ..placed(widget.rect, round)
         };
-        let mut shape = commands.spawn((Shape, UiTargetCamera(camera), node));
+        let mut shape = commands.spawn((Shape, UiTargetCamera(camera), GlobalZIndex(OVER), node));
         if widget.look == Look::Words {
             let size = match widget.control {
                 Control::Said => self.text * LOUD,
@@ -360,7 +370,8 @@ impl Pen<'_> {
                     None => inside.spawn((node, BackgroundColor(self.colours.held))),
                 };
                 let title = shortened(&widget.words, size.x / (self.text * 0.85 * 0.55));
-                inside.spawn(self.words(&title, self.text * 0.85, words));
+                let size = self.text * 0.85;
+                inside.spawn(self.set(&title, size, words, LineBreak::NoWrap));
             }
             _ => {
                 if let Some(image) = image {

@@ -128,9 +128,7 @@ pub fn facts(
             false => signs,
         }),
         lamp: hand.lamp_seen().map(|at| at.as_vec2()),
-        lamp_words: hand
-            .lamp()
-            .map_or(String::new(), |lamp| lamp_words(lamp, spoken)),
+        lamp_words: hand.lamp().map_or(String::new(), |lamp| dial_words(lamp, spoken)),
         presets: presets(hand, shown, spoken),
         sliders: sliders(hand, shown, spoken),
         list: list(shown, hand, measuring, interface, (spoken, languages)),
@@ -297,6 +295,7 @@ fn list(
             let on = hand.shows_hotspots();
             items.push(setting(Control::Hotspots, Icon::Layers, "hotspots", on));
         }
+        items.push(setting(Control::Caption, Icon::Scenes, "caption", false));
         let larger = interface.text > 0;
         items.push(setting(
             Control::TextSize,
@@ -322,6 +321,21 @@ fn list(
         }
     }
     items
+}
+
+/// Where a lamp stands, in two numbers.
+fn dial_words(lamp: LampPlace, spoken: Spoken) -> String {
+    let numbers = [
+        spoken.fill(
+            "lamp-elevation",
+            &[("elevation", lamp.elevation_deg.round().into())],
+        ),
+        spoken.fill(
+            "lamp-azimuth",
+            &[("azimuth", (lamp.azimuth_deg.round() % 360.0).into())],
+        ),
+    ];
+    numbers.join(" · ")
 }
 
 /// Where a lamp stands, in words.

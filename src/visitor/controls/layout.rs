@@ -78,6 +78,8 @@ pub struct Laid {
     pub widgets: Vec<Widget>,
     pub grounds: Vec<Rect>,
     pub right_to_left: bool,
+    /// Where the rows at the bottom begin, in logical pixels from the top.
+    foot_from: f32,
 }
 
 impl Laid {
@@ -94,8 +96,7 @@ impl Laid {
 
     /// Height of what lies at the bottom, in logical pixels, which texts keep clear of.
     pub fn foot(&self, room: &Room) -> f32 {
-        let bar = self.grounds.first();
-        bar.map_or(0.0, |bar| (room.size.y - bar.min.y).max(0.0))
+        (room.size.y - self.foot_from).max(0.0)
     }
 }
 
@@ -194,6 +195,7 @@ pub fn lay(room: &Room, facts: &Facts) -> Laid {
     if facts.open.contains(&Panel::Scenes) && !facts.scenes.is_empty() {
         top = strip(room, &mut laid, facts, top);
     }
+    laid.foot_from = top;
     if facts.open.contains(&Panel::Light) {
         light(room, &mut laid, facts, top);
     }
@@ -274,21 +276,44 @@ fn strip(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) -> f32 {
 /// The lamp in the hand, at the side where reading ends.
 fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
     let (free, gap, target) = (room.free(), room.gap(), room.target());
-    let across = DIAL.max(4.0) * target + 5.0 * gap;
     let columns = 4;
+    let words = facts.presets.iter().flat_map(|item| item.words.split(' '));
+    let widest = words.map(|word| room.width_of(word) + 0.6 * room.text);
+    let width = widest.fold(target, f32::max);
+    let across = columns as f32 * (width + gap) + gap;
     let rows = facts.presets.len().div_ceil(columns);
     let sliders = facts.sliders.len() as f32;
     let line = room.text * LINE;
     let fixed = (rows as f32 + sliders) * (target + gap) + 3.0 * gap + line;
-    let room_for = bottom - gap - free.min.y - fixed;
-    let diameter = (DIAL * target).min(room_for).max(0.0);
-    let has_dial = diameter >= DIAL_LEAST * target && facts.lamp.is_some();
-    let height = fixed + if has_dial { diameter } else { -line };
+    let room_for = bottom - gap - free.min.y;
+    let above = (DIAL * target).min(room_for - fixed - gap).max(0.0);
+    // Where there is no room above the rest, the dial lies beside it.
+    let is_beside = above < DIAL_LEAST * target && facts.lamp.is_some();
+    let beside = (DIAL * target).min(fixed - line - 3.0 * gap);
+    let diameter = if is_beside { beside } else { above };
+    let has_dial = facts.lamp.is_some();
+    let height = match (has_dial, is_beside) {
+        (true, false) => fixed + diameter,
+        _ => fixed - line,
+    };
     let (left, top) = (free.max.x - across, bottom - gap - height);
+    let ground_left = match is_beside {
+        true => left - diameter - 2.0 * gap,
+        false => left,
+    };
     laid.grounds
-        .push(Rect::new(left, top, free.max.x, bottom - gap));
+        .push(Rect::new(ground_left, top, free.max.x, bottom - gap));
     let mut y = top + gap;
-    if let (true, Some(place)) = (has_dial, facts.lamp) {
+    if let (true, Some(place)) = (is_beside, facts.lamp) {
+        let min = Vec2::new(ground_left + gap, y);
+        laid.widgets.push(Widget {
+            control: Control::Dial,
+            rect: Rect::from_corners(min, min + diameter),
+            icon: None,
+            words: String::new(),
+            look: Look::Dial { place },
+        });
+    } else if let (true, Some(place)) = (has_dial, facts.lamp) {
         let min = Vec2::new(left + (across - diameter) / 2.0, y);
         laid.widgets.push(Widget {
             control: Control::Dial,
@@ -307,7 +332,6 @@ fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
         });
         y += line + gap;
     }
-    let width = (across - gap) / columns as f32 - gap;
     for (k, item) in facts.presets.iter().enumerate() {
         let at = Vec2::new((k % columns) as f32, (k / columns) as f32);
         let min = Vec2::new(left + gap, y) + at * Vec2::new(width + gap, target + gap);

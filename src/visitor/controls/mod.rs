@@ -41,7 +41,7 @@ pub enum Panel {
 
 impl Panel {
     /// Whether it is a list at the side.
-    fn is_list(self) -> bool {
+    pub fn is_list(self) -> bool {
         !matches!(self, Self::Light | Self::Scenes)
     }
 }
@@ -107,6 +107,7 @@ pub enum Control {
     Contrast,
     Calm,
     Hotspots,
+    Caption,
     /// Refuses the countdown.
     Stay,
     Digit(u8),

@@ -217,6 +217,7 @@ fn wish(control: Control) -> Option<Intent> {
         Control::TakeBack => Intent::TakeBack,
         Control::Done => Intent::GoOn,
         Control::Hotspots => Intent::Hotspots,
+        Control::Caption => Intent::Caption,
         _ => return None,
     })
 }
