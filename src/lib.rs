@@ -25,6 +25,7 @@
 //! | [`tradeoff`] | how far each tier is from the judge, and which one serves a scene |
 //! | [`cost`] | what each tier costs: instructions, and time on this machine |
 //! | [`sample`] | the sample exhibits, drawn by code |
+//! | [`wall`] | what keeps a wall running: publishing, the heartbeat, the supervisor |
 //! | [`cli`] | one file for each command |
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
@@ -60,4 +61,5 @@ pub mod stage;
 pub mod tradeoff;
 pub mod units;
 pub mod visitor;
+pub mod wall;
 pub mod wording;
