@@ -8,7 +8,7 @@ use std::{
 
 /// Each module with the modules, or paths within them, that it may name. `bevy` stands for every
 /// crate of Bevy's. The crate's root and `cli` may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 24] = [
+const MAY_IMPORT: [(&str, &[&str]); 25] = [
     ("units", &[]),
     ("colour", &[]),
     ("optics", &["units", "colour"]),
@@ -17,6 +17,8 @@ const MAY_IMPORT: [(&str, &[&str]); 24] = [
     ("lettering", &[]),
     // Headers of pictures are checked at validation.
     ("manifest", &["units", "colour", "optics", "maps"]),
+    // It is read by the manifest's machinery, and names exhibits and profiles of displays.
+    ("installation", &["manifest", "maps", "colour"]),
     // What leaving a term out costs is told in ΔE00.
     ("needs", &["manifest", "optics", "maps", "colour"]),
     // What is measured lies on a side of an exhibit, in its maps.
@@ -116,12 +118,27 @@ const MAY_IMPORT: [(&str, &[&str]); 24] = [
             // What is exported from the window: how small a figure may be, and its table's file.
             "figure::bar::LEAST_PX",
             "maps::encode",
+            // What is read, and in which letters.
+            "wording",
+            "installation::Pin",
         ],
     ),
     // A museum's wordings are told of as its manifests are.
     ("wording", &["manifest"]),
-    // Told how it is by whoever knows, so that it serves and writes without them.
-    ("wall", &[]),
+    // Publishing checks an exhibit as it is read; what is supervised is another process. The house hangs
+    // the visitor's picture on the displays of an installation, and follows its hours.
+    (
+        "wall",
+        &[
+            "bevy",
+            "colour",
+            "installation",
+            "manifest",
+            "stage",
+            "visitor",
+            "wording",
+        ],
+    ),
     ("cli", &["*"]),
 ];
 

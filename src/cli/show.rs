@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
-use super::{Failure, later, options};
+use super::{Failure, options};
 use crate::{
+    installation::{Installation, Use},
     optics::tier::Tier,
+    stage::say,
     visitor::{self, KEYS, Manners, ShowError, ShowOptions, Waits},
+    wall::house,
 };
 
 /// On a public wall that says nothing else.
@@ -45,15 +48,12 @@ pub struct Arguments {
     /// For a public wall: fills the display, leads nowhere else, and tours while nobody is there
     #[arg(long)]
     kiosk: bool,
-    /// The place and its displays (not in this version yet)
-    #[arg(long, value_name = "FILE")]
+    /// The place, its displays, hours and exhibits, from a file as exhibits/installation.toml
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["exhibit", "scene", "link"])]
     installation: Option<PathBuf>,
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
-    if arguments.installation.is_some() {
-        return Err(later::not_yet("--installation"));
-    }
     let options = ShowOptions {
         scene: arguments.scene,
         link: arguments.link,
@@ -68,13 +68,28 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             ..Manners::default()
         },
     };
+    if let Some(file) = arguments.installation {
+        let used = match arguments.kiosk {
+            true => Use::Kiosk,
+            false => Use::Desk,
+        };
+        let (installation, warnings) = Installation::read_for(&file, used)?;
+        for warning in warnings {
+            say(warning);
+        }
+        return ended(house::show(installation, &options)?);
+    }
     let path = arguments.exhibit.or_else(sample_exhibit).ok_or_else(|| {
         Failure::Usage(
             "name an exhibit; the sample exhibit is not here, but `recto sample exhibits` writes it"
                 .to_owned(),
         )
     })?;
-    match visitor::show(&path, &options)? {
+    ended(visitor::show(&path, &options)?)
+}
+
+fn ended(code: u8) -> Result<(), Failure> {
+    match code {
         0 => Ok(()),
         code => Err(Failure::Ended(code)),
     }

@@ -30,13 +30,13 @@ pub mod controls;
 mod display;
 mod export;
 mod foresight;
-mod glass;
+pub mod glass;
 pub mod hand;
 mod hotspots;
 mod input;
 mod intent;
 mod lamp;
-mod letters;
+pub mod letters;
 mod marks;
 mod measuring;
 mod motion;
@@ -60,11 +60,17 @@ pub use hand::{Hand, Serving};
 pub use intent::Intent;
 pub use lamp::{LOWEST_DEG, LampPlace};
 pub use measuring::Kind;
-pub use window::VisitorPlugin;
+pub use staff::StaffWish;
+pub use window::{Closed, Due, VisitorPlugin};
+
+use bevy::app::App;
 
 use crate::{
     device::{self, NoDevice},
-    manifest::{Exhibit, Fault, Faults, Link, Severity, did_you_mean, quote, quoted_list},
+    installation::Pin,
+    manifest::{
+        Exhibit, Fault, Faults, Link, Severity, did_you_mean, exhibit::Accuracy, quote, quoted_list,
+    },
     optics::tier::Tier,
     stage::say,
 };
@@ -101,12 +107,34 @@ pub struct Manners {
     /// What everybody reaches, from the picture's top, as shares of its height.
     pub reach: Option<[f64; 2]>,
     /// The staff's; without one there is no panel.
-    pub pin: Option<String>,
-    pub enlarge: bool,
+    pub pin: Option<Pin>,
+    /// Factor of the text's size; 0 is 1.
+    pub enlarge: f64,
     pub contrast: bool,
     pub calm: bool,
     /// A control after the other is pointed out, each for so many seconds, for those who press one switch.
     pub scan_s: Option<f64>,
+    /// Instead of what exhibits ask for: ΔE00, and ms of a frame.
+    pub max_delta_e: Option<f64>,
+    pub frame_ms: Option<f64>,
+}
+
+impl Manners {
+    /// `exhibit` with the accuracy that this place asks for.
+    fn amended(&self, exhibit: Arc<Exhibit>) -> Arc<Exhibit> {
+        let own = exhibit.accuracy;
+        let accuracy = Accuracy {
+            max_delta_e: self.max_delta_e.unwrap_or(own.max_delta_e),
+            frame_ms: self.frame_ms.unwrap_or(own.frame_ms),
+        };
+        match accuracy == own {
+            true => exhibit,
+            false => Arc::new(Exhibit {
+                accuracy,
+                ..Exhibit::clone(&exhibit)
+            }),
+        }
+    }
 }
 
 /// Why there is no window.
@@ -125,6 +153,18 @@ pub enum ShowError {
 /// # Errors
 /// All faults of the exhibit, or [`ShowError::NoDevice`] or [`ShowError::NoDisplay`].
 pub fn show(path: &Path, options: &ShowOptions) -> Result<u8, ShowError> {
+    show_in(path, options, |_| {})
+}
+
+/// As [`show`], in a house that has more to it.
+///
+/// # Errors
+/// As [`show`].
+pub fn show_in(
+    path: &Path,
+    options: &ShowOptions,
+    furnish: impl FnOnce(&mut App),
+) -> Result<u8, ShowError> {
     let link = options.link.as_deref().map(Link::read).transpose()?;
     let (exhibit, warnings) = Exhibit::read_with(path, link.as_ref())?;
     let scene = match link {
@@ -137,7 +177,8 @@ pub fn show(path: &Path, options: &ShowOptions) -> Result<u8, ShowError> {
     }
     device::probe()?;
     display::probe()?;
-    Ok(window::run(Arc::new(exhibit), scene, options)?)
+    let exhibit = options.manners.amended(Arc::new(exhibit));
+    Ok(window::run(exhibit, scene, options, furnish)?)
 }
 
 fn first_scene(exhibit: &Exhibit, id: Option<&str>) -> Result<usize, Faults> {

@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use bevy::prelude::*;
 
+use crate::installation::Pin;
+
 use super::controls::{
     Control, Staff,
     facts::Spoken,
@@ -25,6 +27,10 @@ const LONGEST: Duration = Duration::from_secs(300);
 /// The keys of the pad, in rows of three.
 const PAD: [u8; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 0];
 
+/// What the staff asks of the house.
+#[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StaffWish(pub Staff);
+
 /// Where the staff is.
 #[derive(Clone, Debug, PartialEq)]
 enum State {
@@ -38,7 +44,7 @@ enum State {
 #[derive(Resource, Clone, Debug)]
 pub struct StaffPanel {
     /// Without one there is no panel.
-    pin: Option<String>,
+    pin: Option<Pin>,
     state: State,
     wrong: u32,
     /// Nothing is tried before.
@@ -52,7 +58,7 @@ pub struct StaffPanel {
 
 impl StaffPanel {
     /// Closed, behind this PIN.
-    pub fn new(pin: Option<String>) -> Self {
+    pub fn new(pin: Option<Pin>) -> Self {
         Self {
             pin,
             state: State::Closed,
@@ -126,10 +132,10 @@ impl StaffPanel {
             return;
         }
         typed.push(char::from(b'0' + digit.min(9)));
-        if typed.len() < pin.len() {
+        if typed.len() < pin.length() {
             return;
         }
-        if typed == pin {
+        if pin.matches(typed) {
             (self.state, self.wrong) = (State::Open, 0);
             return;
         }
@@ -174,7 +180,7 @@ impl StaffPanel {
                         spoken.fill("staff-wait", &[("seconds", seconds.into())])
                     }
                 };
-                let hidden = "•".repeat(typed.len());
+                let hidden = "*".repeat(typed.len());
                 let digit = |digit: &u8| {
                     let words = digit.to_string();
                     Item::button(Control::Digit(*digit), None, words, false)
@@ -200,7 +206,7 @@ mod tests {
     use super::*;
 
     fn asking() -> StaffPanel {
-        let mut panel = StaffPanel::new(Some("4711".into()));
+        let mut panel = StaffPanel::new(Some(Pin::new("4711").expect("a PIN")));
         panel.land(1, Vec2::splat(10.0), 4.0, Duration::from_secs(1));
         panel.lift(1, Vec2::splat(12.0), 4.0, Duration::from_secs(5));
         assert!(panel.is_open());
@@ -214,7 +220,7 @@ mod tests {
 
     #[test]
     fn only_a_long_hold_in_the_corner_asks() {
-        let mut panel = StaffPanel::new(Some("4711".into()));
+        let mut panel = StaffPanel::new(Some(Pin::new("4711").expect("a PIN")));
         let hold = |panel: &mut StaffPanel, at: f32, seconds: u64| {
             panel.land(1, Vec2::splat(at), 4.0, Duration::from_secs(10));
             let end = Duration::from_secs(10 + seconds);

@@ -30,12 +30,12 @@ use wgpu::DeviceType;
 use super::{
     Manners, NoDisplay, ShowOptions,
     alarm::Alarm,
-    attract::{Attract, Due, Touched},
+    attract::{self, Attract, Touched},
     board,
     caption::{self, Texts},
     comparing,
     controls::{
-        Contact, Interface, Reading, Staff,
+        Contact, Interface, Reading,
         draw::{self, Controls, Languages, ProgramWords, Reach},
         icons::Icons,
         operate::{self, Asked},
@@ -53,7 +53,7 @@ use super::{
     measuring::Measuring,
     reader::Reader,
     saving::{self, Saved},
-    staff::StaffPanel,
+    staff::{StaffPanel, StaffWish},
     tools::{self, Pointer},
 };
 use crate::{
@@ -89,8 +89,6 @@ const PAUSE: Duration = Duration::from_millis(400);
 const LOADING_PAUSE: Duration = Duration::from_millis(30);
 /// A public wall that rests draws a frame as often as this, to show that it could.
 const HEARTBEAT: Duration = Duration::from_secs(60);
-/// The exit code by which the staff asks whoever supervises for a new start.
-const RESTART: u8 = 75;
 /// Writes the number of frames drawn into this file, for tests.
 const FRAME_LOG: &str = "RECTO_FRAME_LOG";
 /// How often.
@@ -103,7 +101,12 @@ const REDUCED_MOTION: &str = "RECTO_REDUCED_MOTION";
 struct DisplayMm(Option<[f64; 2]>);
 
 /// Shows scene number `scene` until the window closes, and returns the exit code.
-pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result<u8, NoDisplay> {
+pub fn run(
+    exhibit: Arc<Exhibit>,
+    scene: usize,
+    options: &ShowOptions,
+    furnish: impl FnOnce(&mut App),
+) -> Result<u8, NoDisplay> {
     let mut app = App::new();
     open(&mut app, &exhibit, options)?;
     let proxy = (**app.world().resource::<EventLoopProxyWrapper>()).clone();
@@ -145,6 +148,7 @@ pub fn run(exhibit: Arc<Exhibit>, scene: usize, options: &ShowOptions) -> Result
         .add_observer(outlive_display)
         .add_systems(Startup, (without_clusters, suit_device, set_up));
     count_frames(&mut app);
+    furnish(&mut app);
     match app.run() {
         AppExit::Success => Ok(0),
         AppExit::Error(code) => Ok(code.get()),
@@ -169,7 +173,7 @@ impl Plugin for VisitorPlugin {
             ..default()
         };
         let home = Reading {
-            text: usize::from(manners.enlarge),
+            enlarge: manners.enlarge as f32,
             contrast: manners.contrast,
             calm: manners.calm,
         };
@@ -190,6 +194,9 @@ impl Plugin for VisitorPlugin {
             .init_resource::<FontFolder>()
             .init_resource::<Reach>()
             .init_resource::<Glass>()
+            .init_resource::<Closed>()
+            .init_resource::<Due>()
+            .add_message::<StaffWish>()
             .init_resource::<Controls>()
             .init_resource::<Icons>()
             .init_resource::<Thumbs>()
@@ -237,7 +244,7 @@ impl Plugin for VisitorPlugin {
                         draw::arrange,
                         board::write,
                         caption::draw,
-                        (thumbs::gather, draw::draw).chain(),
+                        (thumbs::gather, draw::draw, darken).chain(),
                         rest,
                     )
                         .chain()
@@ -343,10 +350,11 @@ fn title(exhibit: &Exhibit) -> String {
 fn take_in_reread(
     mut reread: MessageReader<Reread>,
     mut hand: ResMut<Hand>,
+    house: Res<House>,
     windows: Query<&mut Window, With<PrimaryWindow>>,
 ) {
     if let Some(Reread(exhibit)) = reread.read().last() {
-        hand.replace(exhibit.clone());
+        hand.replace(house.0.amended(exhibit.clone()));
         entitle(windows, exhibit);
     }
 }
@@ -403,6 +411,46 @@ fn measure(
     });
 }
 
+/// The screens are dark, and nothing is touched.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Closed(pub bool);
+
+/// When the house wants to be asked again.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub struct Due(pub Option<Duration>);
+
+/// What darkens the picture.
+#[derive(Component)]
+struct Dark;
+
+/// Darkens the picture, or not.
+fn darken(
+    mut commands: Commands,
+    closed: Res<Closed>,
+    cameras: Query<Entity, With<TextCamera>>,
+    dark: Query<Entity, With<Dark>>,
+) {
+    let Ok(camera) = cameras.single() else {
+        return;
+    };
+    match (closed.0, dark.iter().next()) {
+        (true, None) => drop(commands.spawn((
+            Dark,
+            UiTargetCamera(camera),
+            GlobalZIndex(i32::MAX),
+            Node {
+                position_type: PositionType::Absolute,
+                width: Val::Percent(100.0),
+                height: Val::Percent(100.0),
+                ..default()
+            },
+            BackgroundColor(Color::BLACK),
+        ))),
+        (false, Some(dark)) => commands.entity(dark).despawn(),
+        _ => {}
+    }
+}
+
 /// The manners of the house.
 #[derive(Resource)]
 struct House(Manners);
@@ -428,12 +476,12 @@ fn attend(
         .advance(time.delta_secs_f64(), busy, &seconds);
     for due in due {
         match due {
-            Due::Home => {
+            attract::Due::Home => {
                 interface.go_home();
                 intents.write(Intent::Home);
                 hand.go_home(languages.spoken(0));
             }
-            Due::Stop(stop) => {
+            attract::Due::Stop(stop) => {
                 if let Some((scene, _)) = stops.get(stop) {
                     hand.stop_at(*scene);
                 }
@@ -453,17 +501,16 @@ fn attend(
 fn serve_staff(
     mut asked: MessageReader<Asked>,
     mut staff: ResMut<StaffPanel>,
-    mut exit: MessageWriter<AppExit>,
+    mut wishes: MessageWriter<StaffWish>,
 ) {
     for asked in asked.read() {
         match asked {
             Asked::Digit(digit) => staff.digit(*digit),
-            Asked::Staff(wish) => match staff.ask(*wish) {
-                Some(Staff::Quit) => drop(exit.write(AppExit::Success)),
-                Some(Staff::Restart) => drop(exit.write(AppExit::from_code(RESTART))),
-                // These are the wall's, which hears of them as well.
-                _ => {}
-            },
+            Asked::Staff(wish) => {
+                if let Some(wish) = staff.ask(*wish) {
+                    wishes.write(StaffWish(wish));
+                }
+            }
             // The touch itself has said so.
             Asked::Stay => {}
         }
@@ -475,7 +522,7 @@ fn read_devices(
     mut devices: ResMut<Devices>,
     time: Res<Time<Real>>,
     (controls, shown): (Res<Controls>, Res<Shown>),
-    (house, glass): (Res<House>, Res<Glass>),
+    (house, glass, closed): (Res<House>, Res<Glass>, Res<Closed>),
     (mut attract, mut staff, mut hand): (ResMut<Attract>, ResMut<StaffPanel>, ResMut<Hand>),
     (mut intents, mut contacts): (MessageWriter<Intent>, MessageWriter<Contact>),
 ) {
@@ -490,11 +537,14 @@ fn read_devices(
     };
     for event in events.read() {
         let event = &glass.event(event);
+        let staff = staff.bypass_change_detection();
+        devices.watch_corner(event, now, staff);
+        if closed.0 && !staff.is_open() {
+            continue;
+        }
         if is_touch(event) && attract.touch() != Touched::GoesOn {
             hand.end_tour();
         }
-        let staff = staff.bypass_change_detection();
-        devices.watch_corner(event, now, staff);
         devices.take(event, now, ground, |wish| match wish {
             Wish::Intent(intent) if house.0.kiosk && intent.leads_out() => {}
             Wish::Intent(intent) => drop(intents.write(intent)),
@@ -650,6 +700,7 @@ fn rest(
     (shown, texts, controls): (Res<Shown>, Res<Texts>, Res<Controls>),
     (interface, thumbs, attract): (Res<Interface>, Res<Thumbs>, Res<Attract>),
     (staff, house, alarm): (Res<StaffPanel>, Res<House>, Option<Res<Alarm>>),
+    (closed, due): (Res<Closed>, Res<Due>),
     (arranged, library, composite): (Res<Arranged>, Res<Library>, Res<Composite>),
     time: Res<Time<Real>>,
     mut hand: ResMut<Hand>,
@@ -675,6 +726,7 @@ fn rest(
         || controls.is_changed()
         || interface.is_changed()
         || thumbs.is_changed()
+        || closed.is_changed()
         || hand.is_moving()
     {
         pace.left = pace.left.max(CHANGE_FRAMES);
@@ -710,6 +762,7 @@ fn rest(
             staff.next(),
             house.0.scan_s.map(Duration::from_secs_f64),
             house.0.kiosk.then_some(HEARTBEAT),
+            due.0,
         ];
         alarm.set(due.into_iter().flatten().min());
     }

@@ -1,13 +1,25 @@
-//! The wall, which runs by itself: what is known about its health, and who is told.
+//! The room and its technician: what keeps a wall running when nobody looks after it, and who is told how
+//! it is.
 //!
-//! | what | where |
+//! | module | what it is |
 //! |---|---|
-//! | how it is: state, faults, frames, memory | [`health`] |
-//! | a page and JSON of it for the technician | [`status`] |
-//! | lines in files that never fill the disk | [`journal`] |
-//! | counts of scenes and languages, without people | [`usage`] |
+//! | [`house`] | an installation's displays, hours, exhibits and manners, and the window that follows them |
+//! | [`panes`] | one picture over several displays |
+//! | [`publish`] | an exhibit's new version, whole or not at all |
+//! | [`heartbeat`] | what a window says of itself, for whoever looks after it |
+//! | [`supervise`] | begins it anew when it crashes, hangs or ends |
+//! | [`health`] | how it is: state, faults, frames, memory |
+//! | [`status`] | a page and JSON of it for the technician |
+//! | [`journal`] | lines in files that never fill the disk |
+//! | [`usage`] | counts of scenes and languages, without people |
 
 pub mod health;
+pub mod heartbeat;
+pub mod house;
 pub mod journal;
+pub mod panes;
+pub mod publish;
+mod signals;
 pub mod status;
+pub mod supervise;
 pub mod usage;

@@ -108,7 +108,7 @@ fn whatever_is_touched_home_is_reached() {
         kiosk: true,
         waits: Some(WAITS),
         languages: vec!["en".into(), "ar".into()],
-        pin: Some("4711".into()),
+        pin: recto::installation::Pin::new("4711").ok(),
         ..Manners::default()
     });
     for k in 0..events {

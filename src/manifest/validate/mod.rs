@@ -22,6 +22,7 @@ use super::{
     raw::RawManifest,
 };
 use names::Names;
+pub(crate) use wording::normalised;
 
 pub(crate) use files::{PICTURE, map_words};
 pub(super) use lamp::{DAYLIGHT_K, usual_lamps};
@@ -135,6 +136,7 @@ impl Validator<'_, '_> {
             registered: std::mem::take(&mut self.registered),
             fingerprint: Fingerprint::default(),
             link: None,
+            published: None,
             not_shown_yet: std::mem::take(&mut self.not_shown_yet),
         };
         self.near_lamps(&exhibit, &root.key("lamp"));

@@ -128,7 +128,9 @@ pub fn facts(
             false => signs,
         }),
         lamp: hand.lamp_seen().map(|at| at.as_vec2()),
-        lamp_words: hand.lamp().map_or(String::new(), |lamp| dial_words(lamp, spoken)),
+        lamp_words: hand
+            .lamp()
+            .map_or(String::new(), |lamp| dial_words(lamp, spoken)),
         presets: presets(hand, shown, spoken),
         sliders: sliders(hand, shown, spoken),
         list: list(shown, hand, measuring, interface, (spoken, languages)),

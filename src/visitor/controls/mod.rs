@@ -163,8 +163,8 @@ pub struct Interface {
 /// How somebody reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
-    /// As in [`Interface`].
-    pub text: usize,
+    /// Factor of the text's size before anybody changes it; 0 is 1.
+    pub enlarge: f32,
     pub contrast: bool,
     pub calm: bool,
 }
@@ -176,7 +176,7 @@ impl Interface {
             wanted,
             open: BTreeSet::new(),
             language: 0,
-            text: home.text,
+            text: 0,
             contrast: home.contrast,
             calm: home.calm,
             first_scene: 0,
@@ -208,7 +208,12 @@ impl Interface {
 
     /// Factor of the text's size.
     pub fn text_factor(&self) -> f32 {
-        TEXT_SIZES[self.text.min(TEXT_SIZES.len() - 1)]
+        let home = if self.home.enlarge > 0.0 {
+            self.home.enlarge
+        } else {
+            1.0
+        };
+        home * TEXT_SIZES[self.text.min(TEXT_SIZES.len() - 1)]
     }
 }
 
