@@ -116,6 +116,8 @@ const MAY_IMPORT: [(&str, &[&str]); 24] = [
             // What is exported from the window: how small a figure may be, and its table's file.
             "figure::bar::LEAST_PX",
             "maps::encode",
+            // What controls and captions say, and in which fonts.
+            "wording",
         ],
     ),
     // A museum's wordings are told of as its manifests are.
