@@ -12,6 +12,8 @@ pub struct Glass {
     pub width_mm: Option<f64>,
     /// What windows show of it; without any, it is the window's own.
     pub panes: Vec<Pane>,
+    /// The pane that was touched last, on which controls lie.
+    pub home: usize,
 }
 
 /// A part of the picture in a window.
@@ -31,6 +33,7 @@ impl Default for Glass {
             pixels: UVec2::ONE,
             width_mm: None,
             panes: Vec::new(),
+            home: 0,
         }
     }
 }
@@ -48,6 +51,18 @@ impl Glass {
             let share = (at - pane.in_window.min) / pane.in_window.size().max(Vec2::ONE);
             pane.in_picture.min + share * pane.in_picture.size()
         })
+    }
+
+    /// The part of the picture on which controls lie, on one display and under none of its frames.
+    pub fn home(&self) -> Rect {
+        let whole = Rect::from_corners(Vec2::ZERO, self.size);
+        self.panes.get(self.home).map_or(whole, |pane| pane.in_picture)
+    }
+
+    /// The pane of a place in the picture.
+    pub fn pane_at(&self, at: Vec2) -> Option<usize> {
+        let mut panes = self.panes.iter();
+        panes.position(|pane| pane.in_picture.contains(at))
     }
 
     /// What happened in a window, as it is told of the picture.

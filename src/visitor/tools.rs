@@ -379,6 +379,7 @@ mod tests {
     use bevy::window::WindowEvent;
 
     use super::*;
+    use crate::visitor::{controls::Laid, input::Ground};
     use crate::{maps::encode, optics::tier::Tier, visitor::hand::Picture};
 
     const SIZE: Vec2 = Vec2::new(400.0, 200.0);

@@ -12,6 +12,7 @@ use std::{
 };
 
 use bevy::{
+    input::touch::TouchPhase,
     core_pipeline::{Core3d, Core3dSystems},
     ecs::relationship::RelationshipTarget,
     log::{Level, LogPlugin},
@@ -522,7 +523,7 @@ fn read_devices(
     mut devices: ResMut<Devices>,
     time: Res<Time<Real>>,
     (controls, shown): (Res<Controls>, Res<Shown>),
-    (house, glass, closed): (Res<House>, Res<Glass>, Res<Closed>),
+    (house, mut glass, closed): (Res<House>, ResMut<Glass>, Res<Closed>),
     (mut attract, mut staff, mut hand): (ResMut<Attract>, ResMut<StaffPanel>, ResMut<Hand>),
     (mut intents, mut contacts): (MessageWriter<Intent>, MessageWriter<Contact>),
 ) {
@@ -541,6 +542,14 @@ fn read_devices(
         devices.watch_corner(event, now, staff);
         if closed.0 && !staff.is_open() {
             continue;
+        }
+        if let WindowEvent::TouchInput(touch) = event
+            && touch.phase == TouchPhase::Started
+            && !devices.is_held(now)
+            && let Some(pane) = glass.pane_at(touch.position)
+            && glass.home != pane
+        {
+            glass.home = pane;
         }
         if is_touch(event) && attract.touch() != Touched::GoesOn {
             hand.end_tour();

@@ -249,6 +249,7 @@ fn hang(app: &mut App, wall: &Wall) {
         size: size.as_vec2(),
         pixels: size,
         width_mm: Some(wall.size_mm().x),
+        home: 0,
         panes: hung
             .iter()
             .flat_map(|(window, of)| of.iter().map(|(pane, _)| on_glass(*window, pane, size)))

@@ -5,10 +5,8 @@ use parley::{
     fontique::SourceCache,
 };
 
-use super::{
-    super::{Direction, direction, source},
-    *,
-};
+use super::*;
+use crate::wording::{Direction, catalogue::SHIPPED, direction, source};
 
 /// Of the machine, for all that is shipped.
 fn found() -> (Wordings, Fonts) {
@@ -72,7 +70,7 @@ fn every_wording_is_drawn_in_every_language() {
     let (wordings, fonts) = found();
     let mut from_right = 0;
     for language in wordings.languages() {
-        for message in source::messages(super::super::catalogue::SHIPPED[0].1) {
+        for message in source::messages(SHIPPED[0].1) {
             for number in [1, 2, 3, 11, 100] {
                 let args: Vec<_> = message
                     .variables

@@ -96,11 +96,12 @@ pub fn arrange(
         wordings: &words.0,
         language,
     };
-    let size = glass.size;
+    let home = glass.home();
+    let size = home.size();
     let room = Room {
         size,
-        px_per_mm: size.x / hand.picture().width_mm.max(1.0) as f32,
-        reach: reach.0,
+        px_per_mm: glass.size.x / hand.picture().width_mm.max(1.0) as f32,
+        reach: reach.0.map(|reach| reach.map(|row| row - home.min.y)),
         text: text_size(size.y.min(SHAPE * size.x)) * QUIET * interface.text_factor(),
         right_to_left: spoken.from_right(),
     };
@@ -110,13 +111,13 @@ pub fn arrange(
         let mut facts = facts::facts(&shown, &hand, &measuring, &interface, (spoken, offered));
         facts.countdown = attract.countdown().map(|left| countdown(left, spoken));
         facts.staff = staff.items(spoken);
-        layout::lay(&room, &facts)
+        layout::lay(&room, &facts).moved(home.min)
     } else {
         Laid::default()
     };
     let foot = match staff.is_open() || attract.countdown().is_some() {
         true => 0.0,
-        false => laid.foot(&room),
+        false => laid.foot(&room) + (glass.size.y - home.max.y),
     };
     let wanted = Controls {
         laid,

@@ -83,6 +83,14 @@ pub struct Laid {
 }
 
 impl Laid {
+    /// The same in a part of the picture that begins at `corner`.
+    pub fn moved(mut self, corner: Vec2) -> Self {
+        let go = |rect: &mut Rect| (rect.min, rect.max) = (rect.min + corner, rect.max + corner);
+        self.widgets.iter_mut().for_each(|widget| go(&mut widget.rect));
+        self.grounds.iter_mut().for_each(go);
+        self
+    }
+
     /// The control at a place.
     pub fn at(&self, place: Vec2) -> Option<&Widget> {
         let is_there = |widget: &&Widget| widget.rect.contains(place) && widget.look != Look::Words;
