@@ -107,14 +107,25 @@ pub(crate) fn manifest_path(path: &Path) -> PathBuf {
 /// # Errors
 /// One fault if the file is absent, not a file, too large or not UTF-8.
 pub(crate) fn read_text(file: &Path) -> Result<String, Faults> {
+    let allowed = "an exhibit's folder with an exhibit.toml, or that file itself";
+    let remedy = "check the path, or begin an exhibit with `recto new`";
+    read_text_of(file, allowed, remedy)
+}
+
+/// As [`read_text`], of a file of which `allowed` and `remedy` are said where it is absent.
+///
+/// # Errors
+/// As [`read_text`].
+pub(crate) fn read_text_of(file: &Path, allowed: &str, remedy: &str) -> Result<String, Faults> {
+    let absent = [allowed, remedy];
     let whole = |found: String, allowed: &str, remedy: &str| -> Faults {
         Words::new(found, allowed, remedy).of_file(file).into()
     };
     let unreadable = |error: io::Error| match error.kind() {
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => whole(
             "no such file".to_owned(),
-            "an exhibit's folder with an exhibit.toml, or that file itself",
-            "check the path, or begin an exhibit with `recto new`",
+            absent[0],
+            absent[1],
         ),
         _ => whole(
             format!("a file that cannot be read ({error})"),

@@ -126,7 +126,7 @@ impl fmt::Display for Faults {
 impl std::error::Error for Faults {}
 
 /// Orders faults as somebody meets them who reads file after file from its top.
-pub(super) fn sort(faults: &mut [Fault]) {
+pub(crate) fn sort(faults: &mut [Fault]) {
     faults.sort_by(|a, b| (&a.file, a.place, &a.path).cmp(&(&b.file, b.place, &b.path)));
 }
 

@@ -21,16 +21,16 @@
 pub mod capture;
 pub mod comparison;
 mod create;
-mod decode;
-mod document;
+pub(crate) mod decode;
+pub(crate) mod document;
 pub mod exhibit;
 pub mod eye;
-mod fault;
+pub(crate) mod fault;
 pub mod frames;
 pub mod hotspot;
 pub mod lighting;
 mod link;
-mod macros;
+pub(crate) mod macros;
 mod overlay;
 pub mod overrides;
 mod query;
@@ -51,6 +51,7 @@ pub use fault::{Fault, Faults, Place, Severity, did_you_mean, nearest, one, quot
 pub use link::Link;
 pub use save::{Draft, SaveAs, SaveError};
 pub use schema::schema;
+pub(crate) use validate::normalised;
 
 use decode::{Decode, Node, Report};
 use document::{Document, Words};

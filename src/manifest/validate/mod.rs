@@ -22,6 +22,7 @@ use super::{
     raw::RawManifest,
 };
 use names::Names;
+pub(crate) use wording::normalised;
 
 pub(crate) use files::{PICTURE, map_words};
 pub(super) use lamp::{DAYLIGHT_K, usual_lamps};

@@ -120,7 +120,8 @@ impl Validator<'_, '_> {
     }
 }
 
-fn normalised(tag: &str) -> Result<String, oxilangtag::LanguageTagParseError> {
+/// A BCP 47 tag in its usual letter cases.
+pub(crate) fn normalised(tag: &str) -> Result<String, oxilangtag::LanguageTagParseError> {
     LanguageTag::parse_and_normalize(tag).map(LanguageTag::into_inner)
 }
 
