@@ -10,6 +10,7 @@
 //! | [`maps`] | picture files → mip chains, each kind filtered in its own way; files written whole |
 //! | [`measure`] | lengths, profiles, laid lines, strokes and colours, each with its uncertainty |
 //! | [`manifest`] | `exhibit.toml` → a validated [`Exhibit`](manifest::Exhibit), or every fault at once |
+//! | [`installation`] | `installation.toml`, the place: displays on the wall, reach, hours, turns of exhibits |
 //! | [`needs`] | what a scene requires and why: terms, maps, sides |
 //! | [`sheet`] | the sheet in Bevy: mesh, its one material and that of the last pass, the narrowing from f64 to f32 |
 //! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
@@ -29,8 +30,9 @@
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
 //! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
-//! `colour`, `maps`, `measure`, `readings`, `figure`, `manifest`, `needs`, `optics`, `reference`,
-//! `tradeoff`, `sample` and `wording` never name Bevy; `tests/layers.rs` holds the table of who may import whom.
+//! `colour`, `maps`, `measure`, `readings`, `figure`, `manifest`, `installation`, `needs`, `optics`,
+//! `reference`, `tradeoff`, `sample`, `wall` and `wording` never name Bevy; `tests/layers.rs` holds the
+//! table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes
 //! [`stage::Shown`], then the stage is arranged from it.
@@ -43,6 +45,7 @@ pub mod cost;
 pub mod develop;
 pub mod device;
 pub mod figure;
+pub mod installation;
 pub mod lettering;
 pub mod manifest;
 pub mod maps;

@@ -17,6 +17,8 @@ const MAY_IMPORT: [(&str, &[&str]); 24] = [
     ("lettering", &[]),
     // Headers of pictures are checked at validation.
     ("manifest", &["units", "colour", "optics", "maps"]),
+    // It is read by the manifest's machinery, and names exhibits and profiles of displays.
+    ("installation", &["manifest", "maps", "colour"]),
     // What leaving a term out costs is told in ΔE00.
     ("needs", &["manifest", "optics", "maps", "colour"]),
     // What is measured lies on a side of an exhibit, in its maps.

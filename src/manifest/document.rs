@@ -122,11 +122,9 @@ pub(crate) fn read_text_of(file: &Path, allowed: &str, remedy: &str) -> Result<S
         Words::new(found, allowed, remedy).of_file(file).into()
     };
     let unreadable = |error: io::Error| match error.kind() {
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => whole(
-            "no such file".to_owned(),
-            absent[0],
-            absent[1],
-        ),
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
+            whole("no such file".to_owned(), absent[0], absent[1])
+        }
         _ => whole(
             format!("a file that cannot be read ({error})"),
             "a readable text file",

@@ -51,6 +51,9 @@ pub struct Exhibit {
     pub fingerprint: Fingerprint,
     /// The link that added the last of the scenes.
     pub link: Option<Link>,
+    /// The folder of published versions that it was read by, where it was; `folder` is that of the
+    /// version.
+    pub published: Option<PathBuf>,
     /// What the manifest asks for that this version of Recto validates but does not show yet,
     /// each as a sentence for `recto check`.
     pub not_shown_yet: Vec<String>,

@@ -11,6 +11,7 @@
 //! | a hotspot's outline, and what lies inside it | [`hotspot`] |
 //! | a photograph → which of its pixels no sheet gives back | [`capture`] |
 //! | a starting manifest from one picture | [`create`] |
+//! | which version of a published exhibit is shown | [`published`] |
 //! | a lamp or camera in one line | `overrides::spec` |
 //! | what lies over a side, as one picture each | [`Scene::laid`], [`Overlay::load`] |
 //! | what overlays and stacks say at one place | [`readout`] |
@@ -33,6 +34,7 @@ mod link;
 pub(crate) mod macros;
 mod overlay;
 pub mod overrides;
+pub mod published;
 mod query;
 pub mod raw;
 pub mod readout;
@@ -58,7 +60,8 @@ use document::{Document, Words};
 use raw::RawManifest;
 
 impl Exhibit {
-    /// Reads the exhibit of a folder, or of a manifest by any name, and checks everything but
+    /// Reads the exhibit of a folder, or of a manifest by any name, or the version that a folder
+    /// of published ones shows, and checks everything but
     /// the pixels of its pictures, of which only the headers are looked at
     /// (see [`Exhibit::verify`]). Returns it with its warnings.
     ///
@@ -73,7 +76,9 @@ impl Exhibit {
     /// # Errors
     /// As [`Self::read`]; those of the link have no place.
     pub fn read_with(path: &Path, link: Option<&Link>) -> Result<(Self, Vec<Fault>), Faults> {
-        let manifest = document::manifest_path(path);
+        // Followed once: what is read here is of one version.
+        let version = published::current(path);
+        let manifest = document::manifest_path(version.as_deref().unwrap_or(path));
         let text = document::read_text(&manifest)?;
         let folder = manifest.parent().unwrap_or(Path::new(""));
         // The folder of a bare file name is the current one.
@@ -82,7 +87,9 @@ impl Exhibit {
         } else {
             folder
         };
-        Self::parse_with(&manifest, folder, &text, link)
+        let (mut exhibit, warnings) = Self::parse_with(&manifest, folder, &text, link)?;
+        exhibit.published = version.map(|_| path.to_owned());
+        Ok((exhibit, warnings))
     }
 
     fn parse(manifest: &Path, folder: &Path, text: &str) -> Result<(Self, Vec<Fault>), Faults> {

@@ -20,6 +20,7 @@ mod bands;
 mod bare;
 mod colour_map;
 mod decode;
+mod display;
 pub mod encode;
 mod error;
 mod header;
@@ -40,6 +41,7 @@ use serde::{Deserialize, Serialize};
 
 pub use bands::{BandPicture, DIVERGING, load_bands_as_colour, load_bands_as_difference};
 pub use bare::{bare_albedo, mean_of};
+pub use display::DisplayProfile;
 pub use error::MapError;
 pub use header::{Header, probe, verify, verify_colour};
 pub use legend::{

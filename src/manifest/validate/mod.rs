@@ -136,6 +136,7 @@ impl Validator<'_, '_> {
             registered: std::mem::take(&mut self.registered),
             fingerprint: Fingerprint::default(),
             link: None,
+            published: None,
             not_shown_yet: std::mem::take(&mut self.not_shown_yet),
         };
         self.near_lamps(&exhibit, &root.key("lamp"));
