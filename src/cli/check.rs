@@ -1,11 +1,11 @@
 //! `recto check`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{
     Failure,
     accuracy::{Detail, Prices},
-    output,
+    output, place,
     report::{PhotographReport, Refused, Report},
 };
 use crate::{
@@ -16,7 +16,11 @@ use crate::{
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The exhibit's folder, or its manifest
-    exhibit: PathBuf,
+    #[arg(required_unless_present = "installation")]
+    exhibit: Option<PathBuf>,
+    /// Check an installation file instead, and every exhibit that it names
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["exhibit", "explain", "json", "masks"])]
+    installation: Option<PathBuf>,
     /// Say what each scene requires and why, and where each map and constant comes from
     #[arg(long)]
     explain: bool,
@@ -31,6 +35,9 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(file) = &arguments.installation {
+        return place::check(file);
+    }
     if let Some(folder) = &arguments.masks {
         output::can_write_folder(folder)?;
     }
@@ -64,7 +71,9 @@ fn say(arguments: &Arguments, report: &Report) -> Result<(), Failure> {
 
 /// What is to be said, and the masks by name where they are asked for.
 fn report(arguments: &Arguments) -> Result<(Report, Vec<(String, Mask)>), Faults> {
-    let (exhibit, mut warnings) = Exhibit::read(&arguments.exhibit)?;
+    // Without an installation there is an exhibit.
+    let path = arguments.exhibit.as_deref().unwrap_or(Path::new("."));
+    let (exhibit, mut warnings) = Exhibit::read(path)?;
     // Those that no scene needs today are still part of the exhibit.
     warnings.extend(exhibit.verify(exhibit.maps())?);
     super::warn(&warnings);

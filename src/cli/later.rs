@@ -7,8 +7,7 @@ use clap::Subcommand;
 use super::Failure;
 
 /// What help says about them.
-pub const HELP: &str = "Not in this version yet: prepare, import, \
-                        export, supervise, publish.";
+pub const HELP: &str = "Not in this version yet: prepare, import, export.";
 
 /// Whatever follows the command.
 #[derive(clap::Args)]
@@ -42,10 +41,6 @@ commands! {
     Import = "import",
     /// Export to IIIF
     Export = "export",
-    /// Keep a wall running
-    Supervise = "supervise",
-    /// Publish an exhibit
-    Publish = "publish",
 }
 
 impl Command {

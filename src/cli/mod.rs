@@ -10,7 +10,9 @@ mod measure;
 mod new;
 mod options;
 mod output;
+mod place;
 mod probe;
+mod publish;
 mod reference;
 mod register;
 mod render;
@@ -19,6 +21,7 @@ mod sample;
 mod saving;
 mod schema;
 mod show;
+mod supervise;
 mod tradeoff;
 
 use std::{ffi::OsString, path::Path};
@@ -52,7 +55,7 @@ enum Command {
     Render(render::Arguments),
     /// Render scenes by random walks of light: slowly, exactly, and with their noise
     Reference(reference::Arguments),
-    /// Name every fault of an exhibit, and what its scenes require
+    /// Name every fault of an exhibit or an installation, and what they require
     Check(check::Arguments),
     /// Print a medium's BSDF at pairs of directions
     Bsdf(bsdf::Arguments),
@@ -68,8 +71,12 @@ enum Command {
     New(new::Arguments),
     /// Write the sample exhibits and their maps
     Sample(sample::Arguments),
-    /// Print the JSON Schema of the manifest, for editors
+    /// Print the JSON Schema of the manifest or of the installation file, for editors
     Schema(schema::Arguments),
+    /// Publish an exhibit: copy it, whole or not at all, for a wall that goes on meanwhile
+    Publish(publish::Arguments),
+    /// Keep a window running: begin it anew when it crashes, hangs or ends
+    Supervise(supervise::Arguments),
     #[command(flatten)]
     Later(later::Command),
 }
@@ -93,6 +100,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
+        Command::Publish(arguments) => publish::run(&arguments),
+        Command::Supervise(arguments) => supervise::run(arguments),
         Command::Later(command) => Err(command.refusal()),
     }
 }

@@ -1,11 +1,11 @@
 //! `recto schema`
 
 use super::{Failure, later, output};
-use crate::manifest;
+use crate::{installation, manifest};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Of the installation file instead (not in this version yet)
+    /// Of the installation file instead
     #[arg(long, conflicts_with = "capture")]
     installation: bool,
     /// Of the capture file instead (not in this version yet)
@@ -15,7 +15,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.installation {
-        return Err(later::not_yet("the schema of the installation file"));
+        return output::result(format_args!("{:#}", installation::schema()));
     }
     if arguments.capture {
         return Err(later::not_yet("the schema of the capture file"));

@@ -25,7 +25,7 @@ fn wrong_usage_ends_with_2() {
         vec!["sample", "x", "--dpi", "NaN"],
         vec!["new", "x"],
         vec!["new", "x", "--albedo", "a.png", "--size-mm", "10"],
-        vec!["schema", "--installation"],
+        vec!["check", exhibit, "--installation", "x.toml"],
         vec!["schema", "--capture"],
         vec!["show", exhibit, "--kiosk"],
         render(["--size", "0x10"]),
