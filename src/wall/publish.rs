@@ -198,6 +198,7 @@ fn listed(folder: &Path) -> Result<Vec<Listed>, PublishError> {
     while let Some(within) = open.pop() {
         let here = folder.join(&within);
         let entries = fs::read_dir(&here).map_err(|error| failed(&here, error))?;
+        let real_here = here.canonicalize().map_err(|error| failed(&here, error))?;
         for entry in entries {
             let entry = entry.map_err(|error| failed(&here, error))?;
             let name = entry.file_name();
@@ -210,9 +211,10 @@ fn listed(folder: &Path) -> Result<Vec<Listed>, PublishError> {
                 // A link to nothing, or a file that was just removed.
                 continue;
             };
+            // Nor is one that leads round in a circle.
             let inside = full
                 .canonicalize()
-                .is_ok_and(|target| target.starts_with(&real));
+                .is_ok_and(|target| target.starts_with(&real) && !real_here.starts_with(target));
             if !inside {
                 continue;
             }

@@ -1,0 +1,21 @@
+//! What keeps a wall running, with real processes: publishing beside a reader, and a supervisor
+//! with windows that crash, hang and end.
+#![cfg(unix)]
+
+#[path = "wall/publish.rs"]
+mod publish;
+#[path = "wall/supervise.rs"]
+mod supervise;
+
+use std::process::{Command, Output};
+
+fn recto() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_recto"))
+}
+
+#[track_caller]
+fn code(output: &Output, code: i32) -> String {
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    stderr
+}
