@@ -1,4 +1,5 @@
-//! Hot reload: the exhibit and its maps are read again when a file of its folder is saved.
+//! Hot reload: the exhibit and its maps are read again when a file of its folder is saved, or when
+//! another version of it is published.
 //!
 //! A thread of its own watches, reads and checks, pixels included; only a sound exhibit comes
 //! out, so that a faulty one never takes the place of what is on screen. Its faults go to the
@@ -9,7 +10,7 @@ use std::{
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex,
-        mpsc::{self, Receiver, Sender},
+        mpsc::{self, Receiver, RecvTimeoutError, Sender},
     },
     thread,
     time::{Duration, SystemTime},
@@ -26,12 +27,15 @@ use crate::{
     manifest::{
         Fault, Faults, Link,
         exhibit::{Drawing, Exhibit, MapFile, Surface},
+        published,
     },
     maps::ColourEncoding,
 };
 
 /// Editors save in several steps, which follow each other faster than this.
 const QUIET: Duration = Duration::from_millis(150);
+/// How often a folder that was removed is looked for.
+const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
 /// Reads `exhibit` again when its files change.
 pub struct ReloadPlugin {
@@ -43,10 +47,9 @@ impl Plugin for ReloadPlugin {
         let (sender, receiver) = mpsc::channel();
         let waker = app.world().get_resource::<Waker>().cloned();
         let reader = Reader::new(&self.exhibit);
-        let folder = self.exhibit.folder.clone();
         let watcher = thread::Builder::new().name("reload".into());
         let watching = watcher.spawn(move || {
-            if let Err(error) = watch(&folder, reader, &sender, waker.as_ref()) {
+            if let Err(error) = watch(reader, &sender, waker.as_ref()) {
                 // The exhibit is shown all the same.
                 say(format_args!("recto: saves are not noticed, {error}"));
             }
@@ -94,12 +97,7 @@ fn take_in(
 }
 
 /// Until the program ends or nobody listens any more.
-fn watch(
-    folder: &Path,
-    mut reader: Reader,
-    sender: &Sender<Sound>,
-    waker: Option<&Waker>,
-) -> notify::Result<()> {
+fn watch(mut reader: Reader, sender: &Sender<Sound>, waker: Option<&Waker>) -> notify::Result<()> {
     let (saved, saves) = mpsc::channel();
     let mut watcher = notify::recommended_watcher(move |event: notify::Result<Event>| {
         if event.map_or(true, |event| is_save(event.kind)) {
@@ -107,9 +105,22 @@ fn watch(
             let _ = saved.send(());
         }
     })?;
-    watcher.watch(folder, RecursiveMode::Recursive)?;
-    while saves.recv().is_ok() {
+    let mut watched = Vec::new();
+    rewatch(&mut watcher, &mut watched, reader.places())?;
+    let mut all_there = true;
+    loop {
+        // A folder that is not there says nothing when it comes back.
+        let news = match all_there {
+            true => saves.recv().map_err(RecvTimeoutError::from),
+            false => saves.recv_timeout(LOOK_AGAIN),
+        };
+        if news == Err(RecvTimeoutError::Disconnected) {
+            break;
+        }
         while saves.recv_timeout(QUIET).is_ok() {}
+        // Before it is read, so that what is saved meanwhile is news. A folder that was replaced is
+        // another one by the same name, and so is that of a new version.
+        all_there = rewatch(&mut watcher, &mut watched, reader.places()).is_ok();
         match reader.read() {
             Ok(None) => {}
             Ok(Some((sound, warnings))) => {
@@ -127,6 +138,26 @@ fn watch(
         }
     }
     Ok(())
+}
+
+/// Watches these places instead of those that were `watched`.
+fn rewatch(
+    watcher: &mut impl Watcher,
+    watched: &mut Vec<PathBuf>,
+    places: Vec<(PathBuf, RecursiveMode)>,
+) -> notify::Result<()> {
+    for place in watched.drain(..) {
+        // It may be gone, and its watch with it.
+        let _ = watcher.unwatch(&place);
+    }
+    let mut result = Ok(());
+    for (place, mode) in places {
+        match watcher.watch(&place, mode) {
+            Ok(()) => watched.push(place),
+            error => result = error,
+        }
+    }
+    result
 }
 
 /// Reading the exhibit is no save, though the system reports that too.
@@ -185,7 +216,12 @@ fn encodings(exhibit: &Exhibit, path: &Path) -> HashSet<ColourEncoding> {
 
 /// Reads one exhibit again and again.
 struct Reader {
-    manifest: PathBuf,
+    /// The manifest, or the folder of published versions.
+    asked: PathBuf,
+    /// Whether it is the latter.
+    published: bool,
+    /// Of the version that was read first.
+    folder: PathBuf,
     /// Adds a scene each time.
     link: Option<Link>,
     /// The files of the last sound version, or of the first one.
@@ -201,7 +237,13 @@ struct Reader {
 impl Reader {
     fn new(exhibit: &Exhibit) -> Self {
         Self {
-            manifest: exhibit.manifest.clone(),
+            asked: exhibit
+                .published
+                .as_ref()
+                .unwrap_or(&exhibit.manifest)
+                .clone(),
+            published: exhibit.published.is_some(),
+            folder: exhibit.folder.clone(),
             link: exhibit.link.clone(),
             sound: stamps(exhibit),
             verified: HashMap::new(),
@@ -210,13 +252,25 @@ impl Reader {
         }
     }
 
+    /// What to watch: the exhibit's folder, and where it is a published one, the pointer to it.
+    fn places(&self) -> Vec<(PathBuf, RecursiveMode)> {
+        if !self.published {
+            return vec![(self.folder.clone(), RecursiveMode::Recursive)];
+        }
+        let version = published::current(&self.asked);
+        [(self.asked.clone(), RecursiveMode::NonRecursive)]
+            .into_iter()
+            .chain(version.map(|version| (version, RecursiveMode::Recursive)))
+            .collect()
+    }
+
     /// A version that is new and sound with its warnings, or `None` if nothing is new.
     fn read(&mut self) -> Result<Option<(Sound, Vec<Fault>)>, Faults> {
-        let read = Exhibit::read_with(&self.manifest, self.link.as_ref());
+        let read = Exhibit::read_with(&self.asked, self.link.as_ref());
         let (exhibit, mut warnings) = match read {
             Ok(read) => read,
             Err(faults) => {
-                let stamps = Stamps::from([(self.manifest.clone(), stamp(&self.manifest))]);
+                let stamps = Stamps::from([(self.asked.clone(), stamp(&self.asked))]);
                 return self.told(stamps, faults);
             }
         };
@@ -231,7 +285,7 @@ impl Reader {
         }
         let maps_changed = stamps
             .iter()
-            .any(|(path, stamp)| *path != self.manifest && self.sound.get(path) != Some(stamp));
+            .any(|(path, stamp)| *path != exhibit.manifest && self.sound.get(path) != Some(stamp));
         self.sound = stamps;
         self.faulty = None;
         warnings.append(&mut self.warnings);
@@ -326,6 +380,106 @@ mod tests {
         std::fs::write(&picture, &bytes).expect("the file is written");
         let (read, _) = reader.read().expect("it is sound").expect("it is new");
         assert!(read.maps_changed);
+    }
+
+    /// Publishes `text`, as `recto publish` does, as the version `name`.
+    #[cfg(unix)]
+    fn publish(root: &Path, name: &str, text: &str) {
+        let version = root.join("versions").join(name);
+        std::fs::create_dir_all(&version).expect("a folder");
+        draw(&version.join("one.png"));
+        draw(&version.join("two.png"));
+        save(&version.join("exhibit.toml"), text);
+        let link = root.join("new");
+        std::os::unix::fs::symlink(Path::new("versions").join(name), &link).expect("a link");
+        std::fs::rename(&link, root.join("current")).expect("it takes its place");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn another_version_is_read_when_the_pointer_leads_to_it() {
+        let root = tempfile::tempdir().expect("a temporary folder");
+        let text = two_drawings("\"two.png\"");
+        publish(root.path(), "a", &text);
+        let (exhibit, _) = Exhibit::read(root.path()).expect("it is sound");
+        let mut reader = Reader::new(&exhibit);
+        assert!(reader.read().expect("it is sound").is_none());
+        publish(root.path(), "b", &text.replace("\"Two\"", "\"Second\""));
+        let watched = reader.places();
+        assert!(
+            watched
+                .iter()
+                .any(|(place, _)| place.ends_with("versions/b"))
+        );
+        let (sound, _) = reader.read().expect("it is sound").expect("it is new");
+        assert!(sound.exhibit.folder.ends_with("versions/b"));
+        assert!(sound.maps_changed, "its maps are others");
+        assert!(reader.read().expect("it is sound").is_none());
+    }
+
+    /// The titles that come out of a thread that watches, each waited for.
+    struct Watched {
+        news: Receiver<Sound>,
+    }
+
+    impl Watched {
+        fn of(path: &Path) -> Self {
+            let (exhibit, _) = Exhibit::read(path).expect("it is sound");
+            let reader = Reader::new(&exhibit);
+            let (sender, news) = mpsc::channel();
+            thread::spawn(move || watch(reader, &sender, None));
+            Self { news }
+        }
+
+        /// What comes out once `change` was made; made again where the watch was not yet there.
+        fn title_after(&self, mut change: impl FnMut()) -> String {
+            loop {
+                change();
+                if let Ok(sound) = self.news.recv_timeout(Duration::from_secs(3)) {
+                    return sound.exhibit.title.0["en"].clone();
+                }
+            }
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_published_version_comes_out_and_so_does_the_one_after_it() {
+        let root = tempfile::tempdir().expect("a temporary folder");
+        let text = |title: &str| two_drawings("\"two.png\"").replace("Two", title);
+        publish(root.path(), "v0", &text("0"));
+        let watched = Watched::of(root.path());
+        for number in ["1", "2", "3"] {
+            let mut tries = 0;
+            let title = watched.title_after(|| {
+                tries += 1;
+                publish(root.path(), &format!("v{number}-{tries}"), &text(number));
+            });
+            assert_eq!(title, number);
+        }
+    }
+
+    #[test]
+    fn a_folder_that_was_removed_is_read_when_it_is_back() {
+        let root = tempfile::tempdir().expect("a temporary folder");
+        let folder = root.path().join("exhibit");
+        let write = |title: &str| {
+            std::fs::create_dir_all(&folder).expect("a folder");
+            draw(&folder.join("one.png"));
+            draw(&folder.join("two.png"));
+            let text = two_drawings("\"two.png\"").replace("Two", title);
+            save(&folder.join("exhibit.toml"), &text);
+        };
+        write("here");
+        let watched = Watched::of(&folder);
+        for title in ["back", "back again"] {
+            let found = watched.title_after(|| {
+                std::fs::remove_dir_all(&folder).expect("it is removed");
+                thread::sleep(Duration::from_millis(400));
+                write(title);
+            });
+            assert_eq!(found, title);
+        }
     }
 
     /// Two drawings, the second with this albedo.
