@@ -12,6 +12,8 @@ mod masks;
 mod measure;
 #[path = "cli/missing.rs"]
 mod missing;
+#[path = "cli/place.rs"]
+mod place;
 #[path = "cli/probe.rs"]
 mod probe;
 #[path = "cli/reference.rs"]

@@ -185,6 +185,7 @@ pub fn supervise(supervised: &Supervised, say: &mut dyn FnMut(&str)) -> io::Resu
         signals,
         say,
         restarts: 0,
+        down: None,
         ever_shown: false,
         watchdog: sd_notify::watchdog_enabled().map(|limit| limit / 3),
         last_ping: Instant::now(),
@@ -231,6 +232,8 @@ struct Supervisor<'s> {
     signals: Receiver<Signal>,
     say: &'s mut dyn FnMut(&str),
     restarts: u32,
+    /// Since when there is no picture to trust, after one was lost.
+    down: Option<Instant>,
     /// Whether any child completed a frame.
     ever_shown: bool,
     /// How often systemd is told that this is running.
@@ -241,11 +244,10 @@ struct Supervisor<'s> {
 impl Supervisor<'_> {
     fn run(&mut self) -> Ended {
         let mut failures = 0;
-        let mut down: Option<Instant> = None;
         loop {
             let started = Instant::now();
             let outcome = match self.start() {
-                Ok(child) => self.look_after(child, down),
+                Ok(child) => self.look_after(child),
                 Err(error) => Outcome::Failed(Failure {
                     words: format!(
                         "{} cannot be started: {error}",
@@ -269,8 +271,7 @@ impl Supervisor<'_> {
                 }
             };
             // Of several failures in a row, the picture is gone since the first.
-            let back = self.ever_shown.then_some(since);
-            down = down.filter(|_| failures > 1).or(back).or(Some(since));
+            self.down.get_or_insert(since);
             self.restarts += 1;
             let ran = Span(started.elapsed());
             let next = match wait.is_zero() {
@@ -305,8 +306,8 @@ impl Supervisor<'_> {
         command.spawn()
     }
 
-    /// Until the child has ended, whoever ended it. The picture is gone since `down`.
-    fn look_after(&mut self, mut child: Child, down: Option<Instant>) -> Outcome {
+    /// Until the child has ended, whoever ended it.
+    fn look_after(&mut self, mut child: Child) -> Outcome {
         let mut watch = Watch::new(self.supervised.limits, Instant::now());
         let mut shown = false;
         let mut doubted = false;
@@ -321,7 +322,7 @@ impl Supervisor<'_> {
             let health = watch.look(Instant::now(), beat);
             if let (false, Some(first)) = (shown, watch.first_frame()) {
                 shown = true;
-                self.is_back(down.map(|down| first - down));
+                self.is_back(first);
             }
             match child.try_wait() {
                 Ok(None) => {}
@@ -359,15 +360,16 @@ impl Supervisor<'_> {
         }
     }
 
-    /// The first frame of a child is complete; before it there was none for so long.
-    fn is_back(&mut self, down: Option<Duration>) {
+    /// The first frame of a child is complete.
+    fn is_back(&mut self, first: Instant) {
         let status = match self.restarts {
             0 => "shows its picture".to_owned(),
             1 => "shows its picture, after 1 restart".to_owned(),
             restarts => format!("shows its picture, after {restarts} restarts"),
         };
-        if let Some(down) = down {
-            self.log(&format!("back, after {} without a picture", Span(down)));
+        if let Some(down) = self.down.take() {
+            let without = first.saturating_duration_since(down);
+            self.log(&format!("back, after {} without a picture", Span(without)));
         }
         self.ever_shown = true;
         notify(&[NotifyState::Ready, NotifyState::Status(&status)]);

@@ -124,6 +124,24 @@ fn an_end_that_nobody_asked_for_and_a_code_are_no_ends() {
 }
 
 #[test]
+fn each_loss_of_the_picture_is_told_with_its_own_time() {
+    let window = Window::new("live 24\n[ $n -lt 3 ] && exit 1\nleave");
+    let log = window.log(3);
+    let without: Vec<f64> = log
+        .lines()
+        .filter_map(|line| line.split_once("back, after ")?.1.split_once(" s without"))
+        .map(|(seconds, _)| seconds.parse().unwrap())
+        .collect();
+    // It ran for more than a second in between, which is no part of the second loss.
+    assert_eq!(without.len(), 2, "{log}");
+    assert!(without[0] >= 1.0 && without[1] >= 2.0, "{log}");
+    let ran = log
+        .lines()
+        .filter(|line| line.contains("code 1 after 1.") || line.contains("code 1 after 2."));
+    assert_eq!(ran.count(), 2, "{log}");
+}
+
+#[test]
 fn a_window_that_begins_anew_by_itself_does_so_at_once() {
     let window = Window::new("live 2\n[ $n -lt 4 ] && { beat 5 5 restart; exit 0; }\nleave");
     let log = window.log(4);
@@ -231,6 +249,36 @@ fn a_signal_is_passed_on_and_both_end() {
             "{log}"
         );
     }
+}
+
+#[test]
+fn the_shipped_unit_starts_what_there_is() {
+    let unit = include_str!("../../assets/recto.service");
+    let value = |key: &str| {
+        let line = unit.lines().find_map(|line| line.strip_prefix(key));
+        line.unwrap_or_else(|| panic!("no {key}"))
+    };
+    for (key, expected) in [("Type=", "notify"), ("Restart=", "always")] {
+        assert_eq!(value(key), expected);
+    }
+    assert!(value("WatchdogSec=").parse::<u32>().unwrap() >= 10);
+    // Its command line, with a window that ends as soon as staff ask for it.
+    let window = Window::new("leave");
+    let words: Vec<String> = value("ExecStart=")
+        .split(' ')
+        .map(|word| word.replace("%h", "/home/wall"))
+        .collect();
+    assert!(words[0].ends_with("/recto"));
+    let output = recto()
+        .args(&words[1..])
+        .env("RECTO_SUPERVISE_PROGRAM", window.path("window"))
+        .output()
+        .unwrap();
+    code(&output, 0);
+    assert_eq!(
+        window.text("arguments").trim(),
+        "show --kiosk --installation /home/wall/recto/installation.toml"
+    );
 }
 
 #[test]
