@@ -16,7 +16,7 @@
 //! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
 //! | [`visitor`] | the window: hand, lamp, keys, caption, hotspots, tools, views saved and exported |
 //! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |
-//! | [`wall`] | the wall by itself: its health, its status page, its log and its counts |
+//! | [`wall`] | the wall by itself: its health, status page, log and counts; publishing, the heartbeat, the supervisor |
 //! | [`wording`] | what the program says on the screen, in every language, and the museum's own |
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
 //! | [`figure`] | a print that can be made again: its scale bar and its sidecar |

@@ -209,7 +209,7 @@ fn killed_at_any_moment_it_leaves_the_last_version_or_the_new_one() {
     museum.publish();
     // Enough to be copied for a while.
     let noise: Vec<u8> = (0..4_000_000_u32)
-        .map(|i| (i * 2_654_435_761_u32.wrapping_add(i) >> 13) as u8)
+        .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8)
         .collect();
     for k in 0..8 {
         fs::write(museum.exhibit().join(format!("maps/extra-{k}.bin")), &noise).unwrap();
