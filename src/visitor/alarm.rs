@@ -85,6 +85,10 @@ mod tests {
         thread::sleep(LEAST);
         let before = rung.load(Ordering::SeqCst);
         thread::sleep(2 * AGAIN);
-        assert_eq!(rung.load(Ordering::SeqCst), before, "whoever is awake is left alone");
+        assert_eq!(
+            rung.load(Ordering::SeqCst),
+            before,
+            "whoever is awake is left alone"
+        );
     }
 }

@@ -56,7 +56,9 @@ impl Glass {
     /// The part of the picture on which controls lie, on one display and under none of its frames.
     pub fn home(&self) -> Rect {
         let whole = Rect::from_corners(Vec2::ZERO, self.size);
-        self.panes.get(self.home).map_or(whole, |pane| pane.in_picture)
+        self.panes
+            .get(self.home)
+            .map_or(whole, |pane| pane.in_picture)
     }
 
     /// The pane of a place in the picture.

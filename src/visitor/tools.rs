@@ -379,7 +379,7 @@ mod tests {
     use bevy::window::WindowEvent;
 
     use super::*;
-    use crate::visitor::{controls::Laid, input::Ground};
+    use crate::visitor::{controls, input::Ground};
     use crate::{maps::encode, optics::tier::Tier, visitor::hand::Picture};
 
     const SIZE: Vec2 = Vec2::new(400.0, 200.0);
@@ -455,9 +455,9 @@ mod tests {
             delta: None,
         });
         let mut devices = app.world_mut().resource_mut::<Devices>();
-        let controls = Laid::default();
+        let laid = controls::Laid::default();
         let ground = Ground {
-            controls: &controls,
+            controls: &laid,
             compare: &|_| false,
         };
         devices.take(&event, Duration::ZERO, ground, |_| {});

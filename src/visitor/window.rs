@@ -12,9 +12,9 @@ use std::{
 };
 
 use bevy::{
-    input::touch::TouchPhase,
     core_pipeline::{Core3d, Core3dSystems},
     ecs::relationship::RelationshipTarget,
+    input::touch::TouchPhase,
     log::{Level, LogPlugin},
     prelude::*,
     render::{RenderApp, RenderPlugin, renderer::RenderAdapterInfo},

@@ -119,6 +119,7 @@ pub fn facts(
     let signs = [Icon::Previous, Icon::Next];
     Facts {
         open: interface.open.clone(),
+        latest: interface.latest,
         bar: bar(shown, hand, measuring, interface, spoken),
         scenes: (0..exhibit.scenes.len()).map(title).collect(),
         scene: hand.scene(),
@@ -215,11 +216,13 @@ fn sliders(hand: &Hand, shown: &Shown, spoken: Spoken) -> Vec<Item> {
             .unwrap_or(KELVIN);
         let words = spoken.fill("colour-temperature", &[("kelvin", kelvin.round().into())]);
         items.push(slider(Control::Warmth, words, warmth(kelvin)));
-        let words = format!("{} × {:.1}", spoken.say("intensity"), glow.gain);
+        let times = (glow.gain * 10.0).round() / 10.0;
+        let words = spoken.fill("intensity-times", &[("times", times.into())]);
         items.push(slider(Control::Intensity, words, intensity(glow.gain)));
     }
     let share = shown.scene.transmitted;
-    let words = format!("{} {:.0} %", spoken.say("light-table"), share * 100.0);
+    let percent = (share * 100.0).round();
+    let words = spoken.fill("light-table-share", &[("share", percent.into())]);
     items.push(slider(Control::Through, words, share));
     items
 }
@@ -250,7 +253,8 @@ fn list(
         }
         let has_share = |mode| matches!(mode, CompareMode::Blend | CompareMode::Glass);
         if let Some(now) = now.filter(|now| has_share(now.mode)) {
-            let words = format!("{} {:.0} %", spoken.say("opacity"), now.at * 100.0);
+            let percent = (now.at * 100.0).round();
+            let words = spoken.fill("opacity-share", &[("share", percent.into())]);
             items.push(slider(Control::Share, words, now.at));
         }
         if now.is_some() {
@@ -273,7 +277,8 @@ fn list(
             items.push(Item::button(layer, None, title.to_owned(), on));
         }
         if let Some(opacity) = layers.iter().find_map(|(_, opacity)| *opacity) {
-            let words = format!("{} {:.0} %", spoken.say("opacity"), opacity * 100.0);
+            let percent = (opacity * 100.0).round();
+            let words = spoken.fill("opacity-share", &[("share", percent.into())]);
             items.push(slider(Control::Opacity, words, opacity));
         }
     } else if open(Panel::Measure) {

@@ -86,7 +86,9 @@ impl Laid {
     /// The same in a part of the picture that begins at `corner`.
     pub fn moved(mut self, corner: Vec2) -> Self {
         let go = |rect: &mut Rect| (rect.min, rect.max) = (rect.min + corner, rect.max + corner);
-        self.widgets.iter_mut().for_each(|widget| go(&mut widget.rect));
+        self.widgets
+            .iter_mut()
+            .for_each(|widget| go(&mut widget.rect));
         self.grounds.iter_mut().for_each(go);
         self
     }
@@ -104,7 +106,10 @@ impl Laid {
 
     /// Height of what lies at the bottom, in logical pixels, which texts keep clear of.
     pub fn foot(&self, room: &Room) -> f32 {
-        (room.size.y - self.foot_from).max(0.0)
+        match self.grounds.is_empty() {
+            true => 0.0,
+            false => (room.size.y - self.foot_from).max(0.0),
+        }
     }
 }
 
@@ -204,10 +209,25 @@ pub fn lay(room: &Room, facts: &Facts) -> Laid {
         top = strip(room, &mut laid, facts, top);
     }
     laid.foot_from = top;
+    let [mut lamp, mut items] = [Laid::default(), Laid::default()];
     if facts.open.contains(&Panel::Light) {
-        light(room, &mut laid, facts, top);
+        light(room, &mut lamp, facts, top);
     }
-    list(room, &mut laid, &facts.list, top);
+    list(room, &mut items, &facts.list, top);
+    // Where there is no room for both, what was opened last goes first.
+    let collide = lamp.grounds.iter().any(|a| {
+        let shared = |b: &Rect| !a.intersect(*b).is_empty();
+        items.grounds.iter().any(shared)
+    });
+    let sides = match (collide, facts.latest) {
+        (true, Some(Panel::Light)) => vec![lamp],
+        (true, _) => vec![items],
+        (false, _) => vec![lamp, items],
+    };
+    for side in sides {
+        laid.widgets.extend(side.widgets);
+        laid.grounds.extend(side.grounds);
+    }
     room.turned(laid)
 }
 
@@ -290,10 +310,15 @@ fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
     let width = widest.fold(target, f32::max);
     let across = columns as f32 * (width + gap) + gap;
     let rows = facts.presets.len().div_ceil(columns);
-    let sliders = facts.sliders.len() as f32;
     let line = room.text * LINE;
-    let fixed = (rows as f32 + sliders) * (target + gap) + 3.0 * gap + line;
     let room_for = bottom - gap - free.min.y;
+    let tall = |sliders: usize| (rows + sliders) as f32 * (target + gap) + 3.0 * gap + line;
+    // What there is no room for is left to keys: the lamp itself comes first.
+    let sliders = match tall(facts.sliders.len()) - line <= room_for {
+        true => &facts.sliders[..],
+        false => &[],
+    };
+    let fixed = tall(sliders.len());
     let above = (DIAL * target).min(room_for - fixed - gap).max(0.0);
     // Where there is no room above the rest, the dial lies beside it.
     let is_beside = above < DIAL_LEAST * target && facts.lamp.is_some();
@@ -347,7 +372,7 @@ fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
             .push(item.at(Rect::from_corners(min, min + Vec2::new(width, target))));
     }
     y += rows as f32 * (target + gap);
-    for item in &facts.sliders {
+    for item in sliders {
         laid.widgets
             .push(item.at(Rect::new(left + gap, y, free.max.x - gap, y + target)));
         y += target + gap;
@@ -533,6 +558,27 @@ mod tests {
         assert!(within(&room));
         room.reach = None;
         assert!(!within(&room), "it can fail");
+    }
+
+    #[test]
+    fn of_two_that_do_not_fit_the_one_opened_last_is_there() {
+        let room = Room {
+            size: Vec2::new(1280.0, 800.0),
+            px_per_mm: 3.78,
+            reach: None,
+            text: 21.76,
+            right_to_left: false,
+        };
+        for (latest, dial) in [(Panel::Light, true), (Panel::More, false)] {
+            let facts = Facts {
+                latest: Some(latest),
+                ..all()
+            };
+            let laid = lay(&room, &facts);
+            let has = |control| laid.widgets.iter().any(|w| w.control == control);
+            assert_eq!(has(Control::Dial), dial);
+            assert_eq!(has(Control::Language(0)), !dial);
+        }
     }
 
     #[test]

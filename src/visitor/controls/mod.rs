@@ -144,6 +144,8 @@ pub struct Interface {
     /// Whether there are any.
     pub wanted: bool,
     pub open: BTreeSet<Panel>,
+    /// The one that was opened last.
+    pub latest: Option<Panel>,
     /// The language of everything that is read; an index into those on offer.
     pub language: usize,
     /// Index into [`TEXT_SIZES`].
@@ -175,6 +177,7 @@ impl Interface {
         Self {
             wanted,
             open: BTreeSet::new(),
+            latest: None,
             language: 0,
             text: 0,
             contrast: home.contrast,
@@ -204,6 +207,7 @@ impl Interface {
             self.open.retain(|open| !open.is_list());
         }
         self.open.insert(panel);
+        self.latest = Some(panel);
     }
 
     /// Factor of the text's size.
@@ -221,6 +225,8 @@ impl Interface {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     pub open: BTreeSet<Panel>,
+    /// The one that was opened last.
+    pub latest: Option<Panel>,
     pub bar: Vec<Item>,
     /// Titles of the scenes.
     pub scenes: Vec<String>,
