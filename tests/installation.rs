@@ -279,12 +279,11 @@ fn an_icc_profile_of_a_display_is_read() {
     for colour in [[1.0, 1.0, 1.0], [0.2, 0.5, 0.7], [0.01, 0.0, 0.9]] {
         let code = correction.encode(colour);
         let expected = colour.map(recto::colour::srgb_encode);
-        for k in 0..3 {
-            assert!(
-                (code[k] - expected[k]).abs() < 4e-4,
-                "{code:?} {expected:?}"
-            );
-        }
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() < 4e-4;
+        assert!(
+            code.iter().zip(&expected).all(near),
+            "{code:?} {expected:?}"
+        );
     }
     let mut bluish = moxcms::ColorProfile::new_srgb();
     bluish.chromatic_adaptation = Some(moxcms::Matrix3d {
