@@ -91,7 +91,7 @@ impl Display for Place<'_> {
         }
         let languages = match &place.languages[..] {
             [] => "those of each exhibit".to_owned(),
-            [home, others @ ..] if others.is_empty() => home.clone(),
+            [home] => home.clone(),
             [home, others @ ..] => format!("{home}, and {}", others.join(", ")),
         };
         writeln!(f, "  languages: {languages}")?;

@@ -108,10 +108,9 @@ pub fn draw(
     (shown, hand, texts): (Res<Shown>, Res<Hand>, Res<Texts>),
     (attract, interface, controls): (Res<Attract>, Res<Interface>, Res<Controls>),
     (words, languages): (Res<ProgramWords>, Res<Languages>),
-    face: Option<Res<Face>>,
+    (face, mut drawn): (Option<Res<Face>>, Local<Drawn>),
     cameras: Query<(Entity, &TextCamera)>,
     panels: Query<Entity, With<Panel>>,
-    mut drawn: Local<Drawn>,
 ) {
     let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
         return;

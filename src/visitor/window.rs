@@ -365,8 +365,7 @@ fn measure(
     windows: Query<(Ref<Window>, Option<&OnMonitor>), With<PrimaryWindow>>,
     monitors: Query<&Monitor>,
     display_mm: Res<DisplayMm>,
-    mut hand: ResMut<Hand>,
-    mut devices: ResMut<Devices>,
+    (mut hand, mut devices): (ResMut<Hand>, ResMut<Devices>),
     mut texts: Query<&mut TextCamera>,
     (mut picture_size, mut glass): (ResMut<PictureSize>, ResMut<Glass>),
     (mut reach, house): (ResMut<Reach>, Res<House>),
@@ -712,9 +711,7 @@ fn rest(
     (closed, due): (Res<Closed>, Res<Due>),
     (arranged, library, composite): (Res<Arranged>, Res<Library>, Res<Composite>),
     time: Res<Time<Real>>,
-    mut hand: ResMut<Hand>,
-    mut pace: ResMut<Pace>,
-    mut settings: ResMut<WinitSettings>,
+    (mut hand, mut pace, mut settings): (ResMut<Hand>, ResMut<Pace>, ResMut<WinitSettings>),
 ) {
     let settled = arranged.is_settled();
     // Only a frame that follows another at once tells how long they take.

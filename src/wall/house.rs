@@ -329,9 +329,7 @@ fn watch(device: &RenderDevice, heart: &Heart, [completed, requested]: [&AtomicU
 fn keep(
     time: Res<Time<Real>>,
     (shown, attract): (Res<Shown>, Res<Attract>),
-    mut keeper: ResMut<Keeper>,
-    mut closed: ResMut<Closed>,
-    mut due: ResMut<Due>,
+    (mut keeper, mut closed, mut due): (ResMut<Keeper>, ResMut<Closed>, ResMut<Due>),
     mut wishes: MessageReader<StaffWish>,
     mut reread: MessageWriter<Reread>,
     mut exit: MessageWriter<AppExit>,

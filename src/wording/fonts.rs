@@ -62,9 +62,12 @@ const KNOWN: [&str; 27] = [
 const FILLED_IN: &str =
     "0123456789.,:;+−±×°%²µΔ·|–—…“”‘’()[]<>/ ABCEKLMRSTabcdefghijklmnopqrstuvwxyz";
 
+/// A script's tag, the package with a font for it, and its letters from … to.
+type WrittenIn = ([u8; 4], &'static str, &'static [(char, char)]);
+
 /// Scripts that the shipped languages and their neighbours are written in, with the package that
 /// has a font for them.
-const SCRIPTS: [([u8; 4], &str, &[(char, char)]); 10] = [
+const SCRIPTS: [WrittenIn; 10] = [
     (
         *b"Latn",
         "fonts-dejavu-core",

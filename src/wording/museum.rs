@@ -154,14 +154,11 @@ fn language_of(path: &Path, faults: &mut Vec<Fault>) -> Option<String> {
 
 fn text_of(path: &Path, faults: &mut Vec<Fault>) -> Option<String> {
     let unreadable = |error: io::Error| {
-        of_file(
-            path,
-            format!("a file that cannot be read ({error})"),
-            "a readable text file",
-            "check its permissions",
-        )
+        let found = format!("a file that cannot be read ({error})");
+        let fault = of_file(path, found, "a readable text file", "check its permissions");
+        Box::new(fault)
     };
-    let read = || -> Result<String, Fault> {
+    let read = || -> Result<String, Box<Fault>> {
         let metadata = fs::metadata(path).map_err(unreadable)?;
         if !metadata.is_file() || metadata.len() > LARGEST_BYTES {
             let found = match metadata.is_file() {
@@ -169,12 +166,8 @@ fn text_of(path: &Path, faults: &mut Vec<Fault>) -> Option<String> {
                 false => "something that is not a file".to_owned(),
             };
             let allowed = format!("a text file of at most {LARGEST_BYTES} bytes");
-            return Err(of_file(
-                path,
-                found,
-                &allowed,
-                "keep to the messages of Recto",
-            ));
+            let fault = of_file(path, found, &allowed, "keep to the messages of Recto");
+            return Err(fault.into());
         }
         let bytes = fs::read(path).map_err(unreadable)?;
         let text = String::from_utf8(bytes).map_err(|error| {
@@ -196,7 +189,7 @@ fn text_of(path: &Path, faults: &mut Vec<Fault>) -> Option<String> {
     let text = match read() {
         Ok(text) => text,
         Err(fault) => {
-            faults.push(fault);
+            faults.push(*fault);
             return None;
         }
     };
