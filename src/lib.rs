@@ -16,7 +16,7 @@
 //! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
 //! | [`visitor`] | the window: hand, lamp, keys, caption, hotspots, tools, views saved and exported |
 //! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |
-//! | [`wall`] | the wall by itself: its health, status page, log and counts; publishing, the heartbeat, the supervisor |
+//! | [`wall`] | the wall by itself: the house of an installation; health, status page, log and counts; publishing, heartbeat, supervisor |
 //! | [`wording`] | what the program says on the screen, in every language, and the museum's own |
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
 //! | [`figure`] | a print that can be made again: its scale bar and its sidecar |
@@ -26,13 +26,12 @@
 //! | [`tradeoff`] | how far each tier is from the judge, and which one serves a scene |
 //! | [`cost`] | what each tier costs: instructions, and time on this machine |
 //! | [`sample`] | the sample exhibits, drawn by code |
-//! | [`wall`] | what keeps a wall running: publishing, the heartbeat, the supervisor |
 //! | [`cli`] | one file for each command |
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
 //! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
 //! `colour`, `maps`, `measure`, `readings`, `figure`, `manifest`, `installation`, `needs`, `optics`,
-//! `reference`, `tradeoff`, `sample`, `wall` and `wording` never name Bevy; `tests/layers.rs` holds the
+//! `reference`, `tradeoff`, `sample` and `wording` never name Bevy; `tests/layers.rs` holds the
 //! table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes

@@ -269,6 +269,8 @@ fn open(app: &mut App, exhibit: &Exhibit, options: &ShowOptions) -> Result<(), N
         .set(WindowPlugin {
             primary_window: Some(window),
             exit_condition: ExitCondition::DontExit,
+            // A public wall would stay without its window, and a desk ends by itself.
+            close_when_requested: false,
             ..default()
         })
         .set(RenderPlugin {
@@ -426,14 +428,14 @@ struct Dark;
 /// Darkens the picture, or not.
 fn darken(
     mut commands: Commands,
-    closed: Res<Closed>,
+    (closed, staff): (Res<Closed>, Res<StaffPanel>),
     cameras: Query<Entity, With<TextCamera>>,
     dark: Query<Entity, With<Dark>>,
 ) {
     let Ok(camera) = cameras.single() else {
         return;
     };
-    match (closed.0, dark.iter().next()) {
+    match (closed.0 && !staff.is_open(), dark.iter().next()) {
         (true, None) => drop(commands.spawn((
             Dark,
             UiTargetCamera(camera),
@@ -480,6 +482,7 @@ fn attend(
                 interface.go_home();
                 intents.write(Intent::Home);
                 hand.go_home(languages.spoken(0));
+                hand.calm(interface.calm);
             }
             attract::Due::Stop(stop) => {
                 if let Some((scene, _)) = stops.get(stop) {

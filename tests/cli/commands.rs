@@ -27,7 +27,6 @@ fn wrong_usage_ends_with_2() {
         vec!["new", "x", "--albedo", "a.png", "--size-mm", "10"],
         vec!["check", exhibit, "--installation", "x.toml"],
         vec!["schema", "--capture"],
-        vec!["show", exhibit, "--kiosk"],
         render(["--size", "0x10"]),
         render(["--size", "16385x1"]),
         render(["--size", "-1x10"]),
