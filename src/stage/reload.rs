@@ -53,11 +53,13 @@ impl Plugin for ReloadPlugin {
 /// From now on the files of `exhibit` are watched, and those of the one before no longer.
 pub fn follow(world: &mut World, exhibit: &Exhibit) {
     let (sender, receiver) = mpsc::channel();
+    let (saved, saves) = mpsc::channel();
     let waker = world.get_resource::<Waker>().cloned();
     let reader = Reader::new(exhibit);
+    let noticed = saved.clone();
     let watcher = thread::Builder::new().name("reload".into());
     let watching = watcher.spawn(move || {
-        if let Err(error) = watch(reader, &sender, waker.as_ref()) {
+        if let Err(error) = watch(reader, (noticed, &saves), &sender, waker.as_ref()) {
             // The exhibit is shown all the same.
             say(format_args!("recto: saves are not noticed, {error}"));
         }
@@ -65,16 +67,37 @@ pub fn follow(world: &mut World, exhibit: &Exhibit) {
     if let Err(error) = watching {
         say(format_args!("recto: saves are not noticed, {error}"));
     }
-    world.insert_resource(News(Mutex::new(receiver)));
+    world.insert_resource(News {
+        receiver: Mutex::new(receiver),
+        watcher: saved,
+    });
 }
 
 /// The exhibit was read again and is sound.
 #[derive(Message, Clone, Debug)]
 pub struct Reread(pub Arc<Exhibit>);
 
+/// What the watching thread hears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Noticed {
+    Save,
+    /// Another exhibit is followed.
+    End,
+}
+
 /// A receiver is not Sync; only [`take_in`] takes it, and never blocks.
 #[derive(Resource)]
-struct News(Mutex<Receiver<Sound>>);
+struct News {
+    receiver: Mutex<Receiver<Sound>>,
+    watcher: Sender<Noticed>,
+}
+
+impl Drop for News {
+    fn drop(&mut self) {
+        // Its thread may have ended by itself.
+        let _ = self.watcher.send(Noticed::End);
+    }
+}
 
 /// A sound exhibit, and whether any of its maps changed since the last one.
 struct Sound {
@@ -88,7 +111,7 @@ fn take_in(
     mut arranged: ResMut<Arranged>,
     mut reread: MessageWriter<Reread>,
 ) {
-    let receiver = match news.bypass_change_detection().0.get_mut() {
+    let receiver = match news.bypass_change_detection().receiver.get_mut() {
         Ok(receiver) => receiver,
         Err(poisoned) => poisoned.into_inner(),
     };
@@ -102,12 +125,16 @@ fn take_in(
 }
 
 /// Until the program ends or nobody listens any more.
-fn watch(mut reader: Reader, sender: &Sender<Sound>, waker: Option<&Waker>) -> notify::Result<()> {
-    let (saved, saves) = mpsc::channel();
+fn watch(
+    mut reader: Reader,
+    (saved, saves): (Sender<Noticed>, &Receiver<Noticed>),
+    sender: &Sender<Sound>,
+    waker: Option<&Waker>,
+) -> notify::Result<()> {
     let mut watcher = notify::recommended_watcher(move |event: notify::Result<Event>| {
         if event.map_or(true, |event| is_save(event.kind)) {
             // The loop below has ended: nothing is left to be told.
-            let _ = saved.send(());
+            let _ = saved.send(Noticed::Save);
         }
     })?;
     let mut watched = Vec::new();
@@ -119,10 +146,14 @@ fn watch(mut reader: Reader, sender: &Sender<Sound>, waker: Option<&Waker>) -> n
             true => saves.recv().map_err(RecvTimeoutError::from),
             false => saves.recv_timeout(LOOK_AGAIN),
         };
-        if news == Err(RecvTimeoutError::Disconnected) {
+        if matches!(news, Ok(Noticed::End) | Err(RecvTimeoutError::Disconnected)) {
             break;
         }
-        while saves.recv_timeout(QUIET).is_ok() {}
+        while let Ok(noticed) = saves.recv_timeout(QUIET) {
+            if noticed == Noticed::End {
+                return Ok(());
+            }
+        }
         // Before it is read, so that what is saved meanwhile is news. A folder that was replaced is
         // another one by the same name, and so is that of a new version.
         all_there = rewatch(&mut watcher, &mut watched, reader.places()).is_ok();

@@ -133,13 +133,17 @@ impl Attract {
         }
     }
 
-    /// Seconds until something changes by itself; none while something does in every frame, or never.
-    pub fn next_s(&self) -> Option<f64> {
+    /// Seconds until something changes by itself, where `stops` are the tour's; none if never.
+    pub fn next_s(&self, stops: &[f64]) -> Option<f64> {
         let waits = self.waits?;
         match self.doing {
             Doing::Waiting { idle_s } => Some((waits.idle_s - idle_s).max(0.0)),
             // Each second is told.
             Doing::Counting { left_s } => Some(left_s - (left_s.ceil() - 1.0).max(0.0)),
+            Doing::Touring { stop, seconds } if stops.len() > 1 => {
+                let lasts = stops[stop % stops.len()];
+                Some((lasts - seconds).max(0.0))
+            }
             Doing::Touring { .. } => None,
         }
     }
@@ -193,7 +197,7 @@ mod tests {
         assert_eq!(attract.advance(1e6, false, &[]), []);
         let mut never = Attract::new(None);
         assert_eq!(never.advance(1e9, false, &STOPS), []);
-        assert_eq!((never.countdown(), never.next_s()), (None, None));
+        assert_eq!((never.countdown(), never.next_s(&STOPS)), (None, None));
     }
 
     #[test]
@@ -201,11 +205,16 @@ mod tests {
         let mut attract = attract();
         let mut asked = 0;
         while !attract.is_touring() {
-            let next = attract.next_s().expect("it waits");
+            let next = attract.next_s(&STOPS).expect("it waits");
             attract.advance(next.max(1e-3), false, &STOPS);
             asked += 1;
             assert!(asked < 20, "{attract:?}");
         }
         assert!(asked >= 11, "each second of the countdown is told");
+        assert_eq!(
+            attract.next_s(&STOPS),
+            Some(STOPS[0]),
+            "also where nothing moves"
+        );
     }
 }

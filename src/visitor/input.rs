@@ -5,7 +5,7 @@ use std::time::Duration;
 use bevy::{
     input::{
         ButtonState,
-        keyboard::{Key, KeyCode, KeyboardInput},
+        keyboard::{Key, KeyCode, KeyboardFocusLost, KeyboardInput},
         mouse::{MouseButtonInput, MouseScrollUnit, MouseWheel},
         touch::{TouchInput, TouchPhase},
     },
@@ -83,6 +83,8 @@ pub struct Devices {
     touches: Touches,
     /// Contacts beside the sheet.
     others: Vec<Other>,
+    /// When anything was done last.
+    heard: Duration,
 }
 
 /// A contact that is not on the sheet.
@@ -109,6 +111,7 @@ impl Devices {
         ground: Ground,
         mut want: impl FnMut(Wish),
     ) {
+        self.heard = now;
         match event {
             WindowEvent::KeyboardInput(key) => self.key(key, |intent| want(Wish::Intent(intent))),
             WindowEvent::CursorMoved(moved) => {
@@ -143,9 +146,29 @@ impl Devices {
         }
     }
 
+    /// Nothing is held any more.
+    pub fn let_go(&mut self, now: Duration, want: impl FnMut(Wish)) {
+        let controls = Laid::default();
+        let ground = Ground {
+            controls: &controls,
+            compare: &|_| false,
+        };
+        self.take(
+            &WindowEvent::KeyboardFocusLost(KeyboardFocusLost),
+            now,
+            ground,
+            want,
+        );
+    }
+
     /// Where something points, in logical pixels from the top left corner.
     pub fn pointer(&self) -> Option<Vec2> {
         self.pointer
+    }
+
+    /// How long nobody has done anything.
+    pub fn quiet(&self, now: Duration) -> Duration {
+        now.saturating_sub(self.heard)
     }
 
     /// Whether somebody holds the sheet or a control; one of whom nothing was heard for long has gone, and

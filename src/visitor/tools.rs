@@ -136,7 +136,10 @@ pub fn follow(
             }
             Intent::Tool(kind) => measuring.take(kind),
             Intent::TakeBack => measuring.take_back(),
-            Intent::Home => measuring.clear(),
+            Intent::Home => {
+                measuring.clear();
+                pointer.wanted = false;
+            }
             Intent::ReadOut => {
                 pointer.wanted = !pointer.wanted;
                 pointer.asked = None;

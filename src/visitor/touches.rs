@@ -139,7 +139,8 @@ impl Touches {
         self.forget(now, &mut did);
         // The end of one with the same number was lost.
         self.drop_finger(id, &mut did);
-        if self.fingers.is_empty() {
+        // What only lies there does not make one finger two.
+        if self.active().count() == 0 {
             (self.most, self.since) = (0, now);
             self.swept.clear();
         }
@@ -499,6 +500,11 @@ mod tests {
         glass.go(9, mm(160.0, 100.0), 420);
         assert!(glass.did.iter().any(|g| matches!(g, Gesture::Drag { .. })));
         glass.lift(9, 500);
+        glass.take();
+        glass.land(9, mm(150.0, 100.0), 600);
+        glass.lift(9, 650);
+        let tap = Gesture::Tap(mm(150.0, 100.0));
+        assert!(glass.did.contains(&tap), "beside a palm too");
         // An elbow that has leant there for long does not take part in a drag.
         let mut glass = Glass::new();
         glass.land(1, mm(300.0, 300.0), 0);

@@ -19,8 +19,8 @@ use bevy::{
     prelude::*,
     render::{RenderApp, RenderPlugin, renderer::RenderAdapterInfo},
     window::{
-        ExitCondition, HasWindows, Monitor, MonitorSelection, OnMonitor, PrimaryWindow,
-        WindowCloseRequested, WindowEvent, WindowMode, WindowResolution,
+        CursorOptions, ExitCondition, HasWindows, Monitor, MonitorSelection, OnMonitor,
+        PrimaryWindow, WindowCloseRequested, WindowEvent, WindowMode, WindowResolution,
     },
     winit::{EventLoopProxyWrapper, UpdateMode, WinitSettings, WinitUserEvent},
 };
@@ -88,6 +88,8 @@ const SLOW: f64 = 1.25;
 const PAUSE: Duration = Duration::from_millis(400);
 /// Between two looks at whether the first maps have arrived.
 const LOADING_PAUSE: Duration = Duration::from_millis(30);
+/// A measurement is left half drawn, and a picture that cannot be shown given up, after so long.
+const LEFT: Duration = Duration::from_secs(300);
 /// A public wall that rests draws a frame as often as this, to show that it could.
 const HEARTBEAT: Duration = Duration::from_secs(60);
 /// Writes the number of frames drawn into this file, for tests.
@@ -150,6 +152,9 @@ pub fn run(
         .add_systems(Startup, (without_clusters, suit_device, set_up));
     count_frames(&mut app);
     furnish(&mut app);
+    if options.manners.kiosk {
+        hide_cursors(app.world_mut());
+    }
     match app.run() {
         AppExit::Success => Ok(0),
         AppExit::Error(code) => Ok(code.get()),
@@ -344,6 +349,18 @@ fn entitle(mut windows: Query<&mut Window, With<PrimaryWindow>>, exhibit: &Exhib
     }
 }
 
+/// Nobody points with a mouse on a wall.
+fn hide_cursors(world: &mut World) {
+    let mut windows = world.query_filtered::<Entity, With<Window>>();
+    let windows: Vec<Entity> = windows.iter(world).collect();
+    for window in windows {
+        world.entity_mut(window).insert(CursorOptions {
+            visible: false,
+            ..default()
+        });
+    }
+}
+
 /// The window's, from the exhibit's.
 fn title(exhibit: &Exhibit) -> String {
     let title = exhibit.text(&exhibit.title, "").unwrap_or_default();
@@ -464,15 +481,27 @@ fn attend(
     mut attract: ResMut<Attract>,
     (mut hand, mut interface): (ResMut<Hand>, ResMut<Interface>),
     (languages, devices, mut staff): (Res<Languages>, Res<Devices>, ResMut<StaffPanel>),
-    (house, mut scan): (Res<House>, Local<f64>),
+    (house, closed, mut scan): (Res<House>, Res<Closed>, Local<f64>),
     mut intents: MessageWriter<Intent>,
 ) {
-    staff.bypass_change_detection().pass(time.elapsed());
-    // Nobody waits for a picture that is not there yet.
-    let busy =
-        !arranged.is_settled() || devices.is_held(time.elapsed()) || measuring.laying().is_some();
+    let now = time.elapsed();
+    staff.bypass_change_detection().pass(now);
+    if closed.0 {
+        // In the dark nothing moves, and whoever comes next begins at home.
+        if closed.is_changed() {
+            attract.touch();
+            interface.go_home();
+            intents.write(Intent::Home);
+            hand.go_home(languages.spoken(0));
+            hand.calm(interface.calm);
+        }
+        return;
+    }
+    // Nobody waits for a picture that is not there yet, nor for a measurement that was left half drawn.
+    let at_work = !arranged.is_settled() || measuring.laying().is_some();
+    let busy = devices.is_held(now) || at_work && devices.quiet(now) < LEFT;
     let stops = super::hand::stops(hand.exhibit());
-    let seconds: Vec<f64> = stops.iter().map(|(_, seconds)| *seconds).collect();
+    let seconds = stop_seconds(&hand);
     let due = attract
         .bypass_change_detection()
         .advance(time.delta_secs_f64(), busy, &seconds);
@@ -498,6 +527,12 @@ fn attend(
             intents.write(Intent::StepFocus(1));
         }
     }
+}
+
+/// How long each stop of the tour lasts.
+fn stop_seconds(hand: &Hand) -> Vec<f64> {
+    let stops = super::hand::stops(hand.exhibit());
+    stops.iter().map(|(_, seconds)| *seconds).collect()
 }
 
 /// Follows what the staff asked for, and the countdown's refusal.
@@ -530,6 +565,14 @@ fn read_devices(
     (mut intents, mut contacts): (MessageWriter<Intent>, MessageWriter<Contact>),
 ) {
     let now = time.elapsed();
+    if closed.is_changed() && closed.0 {
+        // Whoever held something is not heard of any more.
+        events.clear();
+        devices.let_go(now, |wish| match wish {
+            Wish::Intent(intent) => drop(intents.write(intent)),
+            Wish::Contact(contact) => drop(contacts.write(contact)),
+        });
+    }
     let taken = |at: DVec2| {
         let compare = shown.scene.compare.as_ref();
         compare.is_some_and(|comparison| comparison.is_taken_at(at, shown.aspect))
@@ -566,13 +609,14 @@ fn read_devices(
 
 /// Whether somebody does something, and not a mouse that trembles by itself.
 fn is_touch(event: &WindowEvent) -> bool {
-    matches!(
-        event,
-        WindowEvent::TouchInput(_)
-            | WindowEvent::MouseButtonInput(_)
-            | WindowEvent::MouseWheel(_)
-            | WindowEvent::KeyboardInput(_)
-    )
+    // Fingers that move are held; a thing that lies there and trembles is nobody.
+    matches!(event, WindowEvent::TouchInput(touch) if touch.phase != TouchPhase::Moved)
+        || matches!(
+            event,
+            WindowEvent::MouseButtonInput(_)
+                | WindowEvent::MouseWheel(_)
+                | WindowEvent::KeyboardInput(_)
+        )
 }
 
 /// Moves the hand, and shows what changed.
@@ -630,6 +674,8 @@ fn follow_wishes(
 ) {
     for intent in intents.read() {
         match intent {
+            // On a wall the next visitor finds what the first one did.
+            Intent::Home if house.0.kiosk => *texts = Texts::default(),
             Intent::Caption => texts.caption = !texts.caption,
             Intent::Keys => texts.keys = !texts.keys,
             Intent::Fullscreen => {
@@ -767,7 +813,9 @@ fn rest(
     }
     if let Some(alarm) = alarm {
         let due = [
-            attract.next_s().map(Duration::from_secs_f64),
+            attract
+                .next_s(&stop_seconds(&hand))
+                .map(Duration::from_secs_f64),
             staff.next(),
             house.0.scan_s.map(Duration::from_secs_f64),
             house.0.kiosk.then_some(HEARTBEAT),

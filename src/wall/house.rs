@@ -69,8 +69,11 @@ struct Keeper {
     restart: Option<Zoned>,
     /// Whose turn it is.
     turn: usize,
-    /// The staff asked for one exhibit after that.
+    /// The staff asked for so many exhibits more, the last of them just now.
     ahead: usize,
+    asked: bool,
+    /// When it opens or closes next.
+    change: Option<Zoned>,
     /// The staff keeps the hours away, until the next change.
     stays: bool,
     was_open: bool,
@@ -122,10 +125,16 @@ pub fn show(installation: Installation, options: &ShowOptions) -> Result<u8, Sho
         "started",
         &[("version", env!("CARGO_PKG_VERSION").into())],
     );
+    let heart = Heart::from_environment().map(Arc::new);
     let keeper = Keeper {
-        restart: installation.hours.next_restart(&now),
+        // Without somebody who begins it anew, it would stay ended.
+        restart: heart
+            .as_ref()
+            .and_then(|_| installation.hours.next_restart(&now)),
         turn,
         ahead: 0,
+        asked: false,
+        change: installation.hours.next_change(&now),
         stays: false,
         was_open: true,
         was_touring: false,
@@ -134,7 +143,7 @@ pub fn show(installation: Installation, options: &ShowOptions) -> Result<u8, Sho
         health,
         journal,
         usage: Mutex::new(usage),
-        heart: Heart::from_environment().map(Arc::new),
+        heart,
         _status: status,
         installation,
     };
@@ -350,7 +359,7 @@ fn keep(
         match wish {
             Staff::Quit => end = Some(heartbeat::State::End),
             Staff::Restart => end = Some(heartbeat::State::Restart),
-            Staff::NextExhibit => keeper.ahead += 1,
+            Staff::NextExhibit => (keeper.ahead, keeper.asked) = (keeper.ahead + 1, true),
             Staff::Hours => keeper.stays = true,
             Staff::Back => {}
         }
@@ -378,10 +387,7 @@ fn keep(
         &mut commands,
     );
     keeper.tell(&shown, &attract, closed.0, seconds);
-    let next = [
-        keeper.installation.hours.next_change(&now),
-        keeper.restart.clone(),
-    ];
+    let next = [keeper.change.clone(), keeper.restart.clone()];
     let next = next.into_iter().flatten().filter_map(|then| {
         let seconds = then.timestamp().as_second() - now.timestamp().as_second();
         u64::try_from(seconds)
@@ -395,10 +401,15 @@ fn keep(
 impl Keeper {
     /// Dark outside the opening hours.
     fn open(&mut self, now: &Zoned, closed: &mut ResMut<Closed>) {
-        let is_open = self.installation.hours.is_open(now);
+        let hours = &self.installation.hours;
+        if self.change.as_ref().is_some_and(|change| change <= now) {
+            self.change = hours.next_change(now);
+        }
+        let is_open = hours.is_open(now);
         if is_open != self.was_open {
             self.was_open = is_open;
-            self.stays = false;
+            // Whoever stays open longer does so until it would open again.
+            self.stays &= !is_open;
             let said = if is_open { "opens" } else { "closes" };
             self.journal.write(Level::Info, said, &[]);
         }
@@ -416,26 +427,28 @@ impl Keeper {
     ) {
         let folders = &self.installation.exhibits.folders;
         let turn = (self.installation.exhibits.turn(now) + self.ahead) % folders.len().max(1);
-        let asked = self.ahead > 0;
-        if turn == self.turn || !(is_empty || asked) {
+        if turn == self.turn || !(is_empty || self.asked) {
             return;
         }
-        self.turn = turn;
-        match Exhibit::read(&folders[turn]) {
-            Ok((exhibit, _)) => {
-                let folder = folders[turn].display().to_string();
-                self.journal
-                    .write(Level::Info, "exhibit", &[("folder", folder.into())]);
-                let exhibit = Arc::new(exhibit);
-                reread.write(Reread(exhibit.clone()));
-                commands.queue(move |world: &mut World| reload::follow(world, &exhibit));
-            }
-            Err(faults) => {
-                self.journal.write(Level::Error, &faults, &[]);
-                let words = faults.to_string();
-                self.health
-                    .update(|about| about.faults = vec![words.clone()]);
-                say(faults);
+        (self.turn, self.asked) = (turn, false);
+        for k in 0..folders.len() {
+            let folder = &folders[(turn + k) % folders.len()];
+            match Exhibit::read(folder) {
+                Ok((exhibit, _)) => {
+                    let said = folder.display().to_string();
+                    self.journal
+                        .write(Level::Info, "exhibit", &[("folder", said.into())]);
+                    let exhibit = Arc::new(exhibit);
+                    reread.write(Reread(exhibit.clone()));
+                    commands.queue(move |world: &mut World| reload::follow(world, &exhibit));
+                    return;
+                }
+                Err(faults) => {
+                    self.journal.write(Level::Error, &faults, &[]);
+                    let words = faults.to_string();
+                    self.health.update(|about| about.faults = vec![words]);
+                    say(faults);
+                }
             }
         }
     }

@@ -233,7 +233,7 @@ fn apply(
     match control {
         Control::Home => {
             interface.go_home();
-            hand.speak(languages.spoken(interface.language));
+            hand.go_home(languages.spoken(interface.language));
             hand.calm(interface.calm);
         }
         Control::Open(panel) => {

@@ -38,7 +38,7 @@ const ITSELF: &str = "/proc/self/exe";
 pub struct Thumbs {
     pictures: HashMap<usize, Handle<Image>>,
     /// The exhibit that they are of, and where they are kept.
-    of: Option<(Arc<Exhibit>, PathBuf)>,
+    of: Option<(Arc<Exhibit>, Option<PathBuf>)>,
     at_work: Option<Work>,
     /// Renders them; without it there are none.
     program: Option<PathBuf>,
@@ -101,9 +101,9 @@ pub fn gather(
         {
             thumbs.at_work = begin(program, &exhibit, folder, &waker).ok();
         }
-        thumbs.of = folder.map(|folder| (exhibit, folder));
+        thumbs.of = Some((exhibit, folder));
     }
-    let Some((exhibit, folder)) = thumbs.of.clone() else {
+    let Some((exhibit, Some(folder))) = thumbs.of.clone() else {
         return;
     };
     if thumbs.pictures.len() == exhibit.scenes.len() {
@@ -123,7 +123,7 @@ pub fn gather(
 /// The exhibit that is shown, where it is another one than that of the pictures. One whose lamp was moved
 /// is the same.
 fn exhibit_of(shown: &Shown, thumbs: &Thumbs) -> Option<Arc<Exhibit>> {
-    let same = |(of, _): &(Arc<Exhibit>, PathBuf)| {
+    let same = |(of, _): &(Arc<Exhibit>, Option<PathBuf>)| {
         of.manifest == shown.exhibit.manifest
             && of.scenes == shown.exhibit.scenes
             && of.drawings == shown.exhibit.drawings
