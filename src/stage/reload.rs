@@ -7,12 +7,13 @@
 
 use std::{
     collections::{BTreeMap, HashMap, HashSet},
+    io,
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex,
         mpsc::{self, Receiver, RecvTimeoutError, Sender},
     },
-    thread,
+    thread::{self, JoinHandle},
     time::{Duration, SystemTime},
 };
 
@@ -52,25 +53,12 @@ impl Plugin for ReloadPlugin {
 
 /// From now on the files of `exhibit` are watched, and those of the one before no longer.
 pub fn follow(world: &mut World, exhibit: &Exhibit) {
-    let (sender, receiver) = mpsc::channel();
-    let (saved, saves) = mpsc::channel();
     let waker = world.get_resource::<Waker>().cloned();
-    let reader = Reader::new(exhibit);
-    let noticed = saved.clone();
-    let watcher = thread::Builder::new().name("reload".into());
-    let watching = watcher.spawn(move || {
-        if let Err(error) = watch(reader, (noticed, &saves), &sender, waker.as_ref()) {
-            // The exhibit is shown all the same.
-            say(format_args!("recto: saves are not noticed, {error}"));
-        }
-    });
-    if let Err(error) = watching {
+    let (news, thread) = News::of(exhibit, waker);
+    if let Err(error) = thread {
         say(format_args!("recto: saves are not noticed, {error}"));
     }
-    world.insert_resource(News {
-        receiver: Mutex::new(receiver),
-        watcher: saved,
-    });
+    world.insert_resource(news);
 }
 
 /// The exhibit was read again and is sound.
@@ -90,6 +78,26 @@ enum Noticed {
 struct News {
     receiver: Mutex<Receiver<Sound>>,
     watcher: Sender<Noticed>,
+}
+
+impl News {
+    /// What comes out of a thread of its own, which ends with it.
+    fn of(exhibit: &Exhibit, waker: Option<Waker>) -> (Self, io::Result<JoinHandle<()>>) {
+        let (sender, receiver) = mpsc::channel();
+        let (saved, saves) = mpsc::channel();
+        let (reader, noticed) = (Reader::new(exhibit), saved.clone());
+        let thread = thread::Builder::new().name("reload".into()).spawn(move || {
+            if let Err(error) = watch(reader, (noticed, &saves), &sender, waker.as_ref()) {
+                // The exhibit is shown all the same.
+                say(format_args!("recto: saves are not noticed, {error}"));
+            }
+        });
+        let news = Self {
+            receiver: Mutex::new(receiver),
+            watcher: saved,
+        };
+        (news, thread)
+    }
 }
 
 impl Drop for News {
@@ -455,27 +463,49 @@ mod tests {
 
     /// The titles that come out of a thread that watches, each waited for.
     struct Watched {
-        news: Receiver<Sound>,
+        news: News,
     }
 
     impl Watched {
         fn of(path: &Path) -> Self {
             let (exhibit, _) = Exhibit::read(path).expect("it is sound");
-            let reader = Reader::new(&exhibit);
-            let (sender, news) = mpsc::channel();
-            thread::spawn(move || watch(reader, &sender, None));
+            let (news, thread) = News::of(&exhibit, None);
+            thread.expect("a thread");
             Self { news }
+        }
+
+        fn heard(&self, within: Duration) -> Result<Sound, RecvTimeoutError> {
+            let receiver = self.news.receiver.lock().expect("nobody panicked");
+            receiver.recv_timeout(within)
         }
 
         /// What comes out once `change` was made; made again where the watch was not yet there.
         fn title_after(&self, mut change: impl FnMut()) -> String {
             loop {
                 change();
-                if let Ok(sound) = self.news.recv_timeout(Duration::from_secs(3)) {
+                if let Ok(sound) = self.heard(Duration::from_secs(3)) {
                     return sound.exhibit.title.0["en"].clone();
                 }
             }
         }
+    }
+
+    #[test]
+    fn an_exhibit_that_is_no_longer_shown_is_no_longer_watched() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        draw(&folder.path().join("one.png"));
+        draw(&folder.path().join("two.png"));
+        save(
+            &folder.path().join("exhibit.toml"),
+            &two_drawings("\"two.png\""),
+        );
+        let (exhibit, _) = Exhibit::read(folder.path()).expect("it is sound");
+        let (news, thread) = News::of(&exhibit, None);
+        let thread = thread.expect("a thread");
+        thread::sleep(Duration::from_millis(300));
+        assert!(!thread.is_finished(), "it watches");
+        drop(news);
+        thread.join().expect("it ends");
     }
 
     #[cfg(unix)]
