@@ -19,9 +19,12 @@
 //! | what only the staff gets at | `staff` |
 //! | what a resting window is woken for | `alarm` |
 //! | which tier serves what is shown | `foresight` |
-//! | the window, and its rest | `window` |
+//! | who is there, and what happens while nobody is | `attending` |
+//! | the window | `window` |
+//! | when it draws, and its rest | `pace` |
 
 mod alarm;
+mod attending;
 mod attract;
 mod board;
 mod caption;
@@ -40,6 +43,7 @@ pub mod letters;
 mod marks;
 mod measuring;
 mod motion;
+mod pace;
 mod reader;
 mod saving;
 mod staff;
@@ -53,6 +57,7 @@ use std::{
     sync::Arc,
 };
 
+pub use attending::{Closed, Due};
 pub use attract::{Attract, Doing, Waits};
 pub use caption::KEYS;
 pub use display::NoDisplay;
@@ -61,7 +66,7 @@ pub use intent::Intent;
 pub use lamp::{LOWEST_DEG, LampPlace};
 pub use measuring::Kind;
 pub use staff::StaffWish;
-pub use window::{Closed, Due, VisitorPlugin};
+pub use window::VisitorPlugin;
 
 use bevy::app::App;
 

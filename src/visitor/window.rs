@@ -1,4 +1,4 @@
-//! The window: opens, follows the hand, and rests while nothing moves.
+//! The window: opens, and follows the hand.
 
 use std::{
     any::Any,
@@ -14,24 +14,23 @@ use std::{
 use bevy::{
     core_pipeline::{Core3d, Core3dSystems},
     ecs::relationship::RelationshipTarget,
-    input::touch::TouchPhase,
     log::{Level, LogPlugin},
     prelude::*,
     render::{RenderApp, RenderPlugin, renderer::RenderAdapterInfo},
     window::{
         CursorOptions, ExitCondition, HasWindows, Monitor, MonitorSelection, OnMonitor,
-        PrimaryWindow, WindowCloseRequested, WindowEvent, WindowMode, WindowResolution,
+        PrimaryWindow, WindowCloseRequested, WindowMode, WindowResolution,
     },
-    winit::{EventLoopProxyWrapper, UpdateMode, WinitSettings, WinitUserEvent},
+    winit::{EventLoopProxyWrapper, WinitSettings, WinitUserEvent},
 };
 
-use glam::DVec2;
 use wgpu::DeviceType;
 
 use super::{
     Manners, NoDisplay, ShowOptions,
     alarm::Alarm,
-    attract::{self, Attract, Touched},
+    attending::{self, Closed, Due, House},
+    attract::Attract,
     board,
     caption::{self, Texts},
     comparing,
@@ -43,15 +42,16 @@ use super::{
         thumbs::{self, Thumbs},
     },
     export::{self, Exports},
-    foresight::{Foresight, Observed, foresee},
+    foresight::{Foresight, foresee},
     glass::Glass,
     hand::{Hand, Picture, Retreat},
     hotspots,
-    input::{Devices, Ground, Wish},
+    input::Devices,
     intent::Intent,
     letters::{self, FontFolder},
     marks::{self, Marks, Shape},
     measuring::Measuring,
+    pace::{self, Pace},
     reader::Reader,
     saving::{self, Saved},
     staff::{StaffPanel, StaffWish},
@@ -63,7 +63,7 @@ use crate::{
     stage::{
         Arranged, Library, Shown, StagePlugin, StageSet, Waker,
         camera::{camera_bundle, without_clusters},
-        composite::{Composite, PictureCamera, PictureSize},
+        composite::{PictureCamera, PictureSize},
         legend::TextCamera,
         reload::{ReloadPlugin, Reread},
         say,
@@ -77,21 +77,6 @@ const ANISOTROPY: u16 = 16;
 /// Pixels per inch of a display whose size is not known.
 const PPI: f64 = 96.0;
 const MM_PER_INCH: f64 = 25.4;
-/// Frames drawn after the stage has settled, until maps and pipelines have reached the screen.
-const SETTLING_FRAMES: u32 = 4;
-/// Frames drawn after a change that needs nothing new on the GPU.
-const CHANGE_FRAMES: u32 = 1;
-/// Frames are too slow that take longer than the exhibit asks by this factor: a display that is
-/// waited for may be a little slower than a round number of ms.
-const SLOW: f64 = 1.25;
-/// A hand that rests longer has come to rest.
-const PAUSE: Duration = Duration::from_millis(400);
-/// Between two looks at whether the first maps have arrived.
-const LOADING_PAUSE: Duration = Duration::from_millis(30);
-/// A measurement is left half drawn, and a picture that cannot be shown given up, after so long.
-const LEFT: Duration = Duration::from_secs(300);
-/// A public wall that rests draws a frame as often as this, to show that it could.
-const HEARTBEAT: Duration = Duration::from_secs(60);
 /// Writes the number of frames drawn into this file, for tests.
 const FRAME_LOG: &str = "RECTO_FRAME_LOG";
 /// How often.
@@ -230,10 +215,10 @@ impl Plugin for VisitorPlugin {
                     (
                         take_in_reread,
                         measure,
-                        attend,
-                        read_devices,
+                        attending::attend,
+                        attending::read_devices,
                         operate::operate,
-                        serve_staff,
+                        attending::serve_staff,
                         steer,
                         tools::follow,
                         follow_wishes,
@@ -250,8 +235,8 @@ impl Plugin for VisitorPlugin {
                         draw::arrange,
                         board::write,
                         caption::draw,
-                        (thumbs::gather, draw::draw, darken).chain(),
-                        rest,
+                        (thumbs::gather, draw::draw, attending::darken).chain(),
+                        pace::rest,
                     )
                         .chain()
                         .after(StageSet::Arrange),
@@ -430,195 +415,6 @@ fn measure(
     });
 }
 
-/// The screens are dark, and nothing is touched.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Closed(pub bool);
-
-/// When the house wants to be asked again.
-#[derive(Resource, Clone, Copy, Debug, Default)]
-pub struct Due(pub Option<Duration>);
-
-/// What darkens the picture.
-#[derive(Component)]
-struct Dark;
-
-/// Darkens the picture, or not.
-fn darken(
-    mut commands: Commands,
-    (closed, staff): (Res<Closed>, Res<StaffPanel>),
-    cameras: Query<Entity, With<TextCamera>>,
-    dark: Query<Entity, With<Dark>>,
-) {
-    let Ok(camera) = cameras.single() else {
-        return;
-    };
-    match (closed.0 && !staff.is_open(), dark.iter().next()) {
-        (true, None) => drop(commands.spawn((
-            Dark,
-            UiTargetCamera(camera),
-            GlobalZIndex(i32::MAX),
-            Node {
-                position_type: PositionType::Absolute,
-                width: Val::Percent(100.0),
-                height: Val::Percent(100.0),
-                ..default()
-            },
-            BackgroundColor(Color::BLACK),
-        ))),
-        (false, Some(dark)) => commands.entity(dark).despawn(),
-        _ => {}
-    }
-}
-
-/// The manners of the house.
-#[derive(Resource)]
-struct House(Manners);
-
-/// Sees whether somebody is there; goes home and tours while nobody is.
-fn attend(
-    time: Res<Time<Real>>,
-    (arranged, measuring, controls): (Res<Arranged>, Res<Measuring>, Res<Controls>),
-    mut attract: ResMut<Attract>,
-    (mut hand, mut interface): (ResMut<Hand>, ResMut<Interface>),
-    (languages, devices, mut staff): (Res<Languages>, Res<Devices>, ResMut<StaffPanel>),
-    (house, closed, mut scan): (Res<House>, Res<Closed>, Local<f64>),
-    mut intents: MessageWriter<Intent>,
-) {
-    let now = time.elapsed();
-    staff.bypass_change_detection().pass(now);
-    if closed.0 {
-        // In the dark nothing moves, and whoever comes next begins at home.
-        if closed.is_changed() {
-            attract.touch();
-            interface.go_home();
-            intents.write(Intent::Home);
-            hand.go_home(languages.spoken(0));
-            hand.calm(interface.calm);
-        }
-        return;
-    }
-    // Nobody waits for a picture that is not there yet, nor for a measurement that was left half drawn.
-    let at_work = !arranged.is_settled() || measuring.laying().is_some();
-    let busy = devices.is_held(now) || at_work && devices.quiet(now) < LEFT;
-    let stops = super::hand::stops(hand.exhibit());
-    let seconds = stop_seconds(&hand);
-    let due = attract
-        .bypass_change_detection()
-        .advance(time.delta_secs_f64(), busy, &seconds);
-    for due in due {
-        match due {
-            attract::Due::Home => {
-                interface.go_home();
-                intents.write(Intent::Home);
-                hand.go_home(languages.spoken(0));
-                hand.calm(interface.calm);
-            }
-            attract::Due::Stop(stop) => {
-                if let Some((scene, _)) = stops.get(stop) {
-                    hand.stop_at(*scene);
-                }
-            }
-        }
-    }
-    if let Some(period) = house.0.scan_s.filter(|_| !controls.laid.widgets.is_empty()) {
-        *scan += time.delta_secs_f64();
-        if *scan >= period {
-            *scan = 0.0;
-            intents.write(Intent::StepFocus(1));
-        }
-    }
-}
-
-/// How long each stop of the tour lasts.
-fn stop_seconds(hand: &Hand) -> Vec<f64> {
-    let stops = super::hand::stops(hand.exhibit());
-    stops.iter().map(|(_, seconds)| *seconds).collect()
-}
-
-/// Follows what the staff asked for, and the countdown's refusal.
-fn serve_staff(
-    mut asked: MessageReader<Asked>,
-    mut staff: ResMut<StaffPanel>,
-    mut wishes: MessageWriter<StaffWish>,
-) {
-    for asked in asked.read() {
-        match asked {
-            Asked::Digit(digit) => staff.digit(*digit),
-            Asked::Staff(wish) => {
-                if let Some(wish) = staff.ask(*wish) {
-                    wishes.write(StaffWish(wish));
-                }
-            }
-            // The touch itself has said so.
-            Asked::Stay => {}
-        }
-    }
-}
-
-fn read_devices(
-    mut events: MessageReader<WindowEvent>,
-    mut devices: ResMut<Devices>,
-    time: Res<Time<Real>>,
-    (controls, shown): (Res<Controls>, Res<Shown>),
-    (house, mut glass, closed): (Res<House>, ResMut<Glass>, Res<Closed>),
-    (mut attract, mut staff, mut hand): (ResMut<Attract>, ResMut<StaffPanel>, ResMut<Hand>),
-    (mut intents, mut contacts): (MessageWriter<Intent>, MessageWriter<Contact>),
-) {
-    let now = time.elapsed();
-    if closed.is_changed() && closed.0 {
-        // Whoever held something is not heard of any more.
-        events.clear();
-        devices.let_go(now, |wish| match wish {
-            Wish::Intent(intent) => drop(intents.write(intent)),
-            Wish::Contact(contact) => drop(contacts.write(contact)),
-        });
-    }
-    let taken = |at: DVec2| {
-        let compare = shown.scene.compare.as_ref();
-        compare.is_some_and(|comparison| comparison.is_taken_at(at, shown.aspect))
-    };
-    let ground = Ground {
-        controls: &controls.laid,
-        compare: &taken,
-    };
-    for event in events.read() {
-        let event = &glass.event(event);
-        let staff = staff.bypass_change_detection();
-        devices.watch_corner(event, now, staff);
-        if closed.0 && !staff.is_open() {
-            continue;
-        }
-        if let WindowEvent::TouchInput(touch) = event
-            && touch.phase == TouchPhase::Started
-            && !devices.is_held(now)
-            && let Some(pane) = glass.pane_at(touch.position)
-            && glass.home != pane
-        {
-            glass.home = pane;
-        }
-        if is_touch(event) && attract.touch() != Touched::GoesOn {
-            hand.end_tour();
-        }
-        devices.take(event, now, ground, |wish| match wish {
-            Wish::Intent(intent) if house.0.kiosk && intent.leads_out() => {}
-            Wish::Intent(intent) => drop(intents.write(intent)),
-            Wish::Contact(contact) => drop(contacts.write(contact)),
-        });
-    }
-}
-
-/// Whether somebody does something, and not a mouse that trembles by itself.
-fn is_touch(event: &WindowEvent) -> bool {
-    // Fingers that move are held; a thing that lies there and trembles is nobody.
-    matches!(event, WindowEvent::TouchInput(touch) if touch.phase != TouchPhase::Moved)
-        || matches!(
-            event,
-            WindowEvent::MouseButtonInput(_)
-                | WindowEvent::MouseWheel(_)
-                | WindowEvent::KeyboardInput(_)
-        )
-}
-
 /// Moves the hand, and shows what changed.
 fn steer(
     mut intents: MessageReader<Intent>,
@@ -732,96 +528,6 @@ fn fall_back(
         }
         Retreat::Stuck => pace.stuck = true,
         Retreat::Nowhere => drop(exit.write(AppExit::from_code(1))),
-    }
-}
-
-/// How the window draws just now.
-#[derive(Resource, Default)]
-struct Pace {
-    /// Frames that follow without being asked for.
-    left: u32,
-    /// Frames at the tier at rest come too slowly to follow a hand.
-    slow: bool,
-    /// How long a frame took last that followed another at once.
-    observed: Option<Observed>,
-    /// When something last moved, since the start.
-    moved: Duration,
-    /// Something has been shown.
-    begun: bool,
-    /// What is wanted cannot be shown until a file is saved: there is nothing to wait for.
-    stuck: bool,
-}
-
-/// Draws on while something moves or is on its way, and then not at all.
-fn rest(
-    (shown, texts, controls): (Res<Shown>, Res<Texts>, Res<Controls>),
-    (interface, thumbs, attract): (Res<Interface>, Res<Thumbs>, Res<Attract>),
-    (staff, house, alarm): (Res<StaffPanel>, Res<House>, Option<Res<Alarm>>),
-    (closed, due): (Res<Closed>, Res<Due>),
-    (arranged, library, composite): (Res<Arranged>, Res<Library>, Res<Composite>),
-    time: Res<Time<Real>>,
-    (mut hand, mut pace, mut settings): (ResMut<Hand>, ResMut<Pace>, ResMut<WinitSettings>),
-) {
-    let settled = arranged.is_settled();
-    // Only a frame that follows another at once tells how long they take.
-    if settled && pace.left > 0 && !hand.is_hurried() {
-        let ms = time.delta_secs_f64() * 1e3;
-        pace.slow = ms > SLOW * shown.exhibit.accuracy.frame_ms;
-        pace.observed = Some(Observed {
-            tier: shown.tier,
-            ms,
-        });
-    }
-    pace.begun |= settled;
-    pace.left = pace.left.saturating_sub(1);
-    if (!settled && !pace.stuck) || arranged.is_fresh() || composite.is_fresh() {
-        pace.left = SETTLING_FRAMES;
-    } else if shown.is_changed()
-        || texts.is_changed()
-        || controls.is_changed()
-        || interface.is_changed()
-        || thumbs.is_changed()
-        || closed.is_changed()
-        || hand.is_moving()
-    {
-        pace.left = pace.left.max(CHANGE_FRAMES);
-    } else if pace.left == 0 && hand.is_hurried() {
-        // At rest, the picture refines; a hand that only pauses does not wait for that.
-        if time.elapsed().saturating_sub(pace.moved) > PAUSE {
-            hand.hurry(false);
-        }
-        pace.left = CHANGE_FRAMES;
-    } else if hand.takes_turns() {
-        pace.left = pace.left.max(CHANGE_FRAMES);
-    }
-    let loading = !settled && library.is_busy();
-    if loading && !pace.begun {
-        // Nothing to see yet: the processor is better used by the maps.
-        std::thread::sleep(LOADING_PAUSE);
-    }
-    // The library wakes a window that waits for it, except that a new one also waits for its
-    // shaders, which do not. From one mode straight to the other: a finite wait in between
-    // keeps a core busy.
-    let mode = if pace.left > 0 && !(loading && pace.begun) {
-        UpdateMode::Continuous
-    } else {
-        UpdateMode::reactive_low_power(Duration::MAX)
-    };
-    if settings.focused_mode != mode {
-        settings.focused_mode = mode;
-        settings.unfocused_mode = mode;
-    }
-    if let Some(alarm) = alarm {
-        let due = [
-            attract
-                .next_s(&stop_seconds(&hand))
-                .map(Duration::from_secs_f64),
-            staff.next(),
-            house.0.scan_s.map(Duration::from_secs_f64),
-            house.0.kiosk.then_some(HEARTBEAT),
-            due.0,
-        ];
-        alarm.set(due.into_iter().flatten().min());
     }
 }
 
