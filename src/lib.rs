@@ -14,7 +14,7 @@
 //! | [`needs`] | what a scene requires and why: terms, maps, sides |
 //! | [`sheet`] | the sheet in Bevy: mesh, its one material and that of the last pass, the narrowing from f64 to f32 |
 //! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
-//! | [`visitor`] | the window: hand, lamp, keys, caption, hotspots, tools, views saved and exported |
+//! | [`visitor`] | the window: hands, lamp, controls, keys, caption, hotspots, tools, views saved and exported, the tour while nobody is there |
 //! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |
 //! | [`wall`] | the wall by itself: the house of an installation; health, status page, log and counts; publishing, heartbeat, supervisor |
 //! | [`wording`] | what the program says on the screen, in every language, and the museum's own |

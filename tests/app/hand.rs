@@ -620,7 +620,14 @@ fn sheets_beside_each_other_follow_the_finger_that_holds_one() {
     let (centre, width) = (camera.centre_mm, camera.width_mm);
     // Zoomed about the middle of the recto's cell, it is still in the middle.
     assert!(centre.distance(size / 2.0) < NEAR_MM, "{centre}");
-    // By a tenth of the picture, in a cell that is half of it.
+    // By a tenth of the picture, in a cell that is half of it. The recto moves with the finger; the
+    // verso's left is the recto's right.
+    assert_sides_follow(&mut hand, 0.1 * width);
+}
+
+/// Dragged to the right at its left and at its right, the picture's sheets go by `mm` with the finger: the
+/// recto so, the verso as its mirror image.
+fn assert_sides_follow(hand: &mut Hand, mm: f64) {
     for (from, sign) in [(-0.5, -1.0), (0.5, 1.0)] {
         let before = hand.shown().scene.camera.centre_mm;
         hand.apply(Intent::Take);
@@ -630,12 +637,8 @@ fn sheets_beside_each_other_follow_the_finger_that_holds_one() {
         });
         let moved = hand.shown().scene.camera.centre_mm.x - before.x;
         hand.apply(Intent::Release);
-        settle(&mut hand);
-        // The recto moves with the finger; the verso's left is the recto's right.
-        assert!(
-            (moved - sign * 0.1 * width).abs() < NEAR_MM,
-            "{moved} {width}"
-        );
+        settle(hand);
+        assert!((moved - sign * mm).abs() < NEAR_MM, "{moved} {mm}");
     }
 }
 
@@ -652,19 +655,5 @@ fn the_side_that_is_dragged_follows_the_finger_under_a_curtain_too() {
     settle(&mut hand);
     let width = hand.shown().scene.camera.width_mm;
     // The curtain's edge is in the middle, the recto on its left.
-    for (from, sign) in [(-0.5, -1.0), (0.5, 1.0)] {
-        let before = hand.shown().scene.camera.centre_mm;
-        hand.apply(Intent::Take);
-        hand.apply(Intent::Drag {
-            from: DVec2::new(from, 0.0),
-            to: DVec2::new(from + 0.1, 0.0),
-        });
-        let moved = hand.shown().scene.camera.centre_mm.x - before.x;
-        hand.apply(Intent::Release);
-        settle(&mut hand);
-        assert!(
-            (moved - sign * 0.05 * width).abs() < NEAR_MM,
-            "{moved} {width}"
-        );
-    }
+    assert_sides_follow(&mut hand, 0.05 * width);
 }

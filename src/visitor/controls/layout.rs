@@ -139,6 +139,14 @@ impl Room {
         self.size.cmpge(least).all() && self.free().height() > 2.0 * self.target()
     }
 
+    /// The place of a control as wide as `width` in a grid of them that begins at `corner`.
+    fn cell(&self, corner: Vec2, [column, row]: [usize; 2], width: f32) -> Rect {
+        let (gap, target) = (self.gap(), self.target());
+        let at = Vec2::new(column as f32, row as f32);
+        let min = corner + at * Vec2::new(width + gap, target + gap);
+        Rect::from_corners(min, min + Vec2::new(width, target))
+    }
+
     fn width_of(&self, words: &str) -> f32 {
         words.chars().count() as f32 * CHARACTER * self.text
     }
@@ -246,10 +254,12 @@ fn bar(room: &Room, laid: &mut Laid, items: &[Item]) -> f32 {
     laid.grounds
         .push(Rect::new(left, top, left + across, free.max.y));
     for (k, item) in items.iter().enumerate() {
-        let at = Vec2::new((k % columns) as f32, (k / columns) as f32);
-        let min = Vec2::new(left + gap, top + gap) + at * Vec2::new(width + gap, target + gap);
-        laid.widgets
-            .push(item.at(Rect::from_corners(min, min + Vec2::new(width, target))));
+        let rect = room.cell(
+            Vec2::new(left + gap, top + gap),
+            [k % columns, k / columns],
+            width,
+        );
+        laid.widgets.push(item.at(rect));
     }
     top
 }
@@ -337,8 +347,12 @@ fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
     laid.grounds
         .push(Rect::new(ground_left, top, free.max.x, bottom - gap));
     let mut y = top + gap;
-    if let (true, Some(place)) = (is_beside, facts.lamp) {
-        let min = Vec2::new(ground_left + gap, y);
+    if let Some(place) = facts.lamp {
+        let x = match is_beside {
+            true => ground_left + gap,
+            false => left + (across - diameter) / 2.0,
+        };
+        let min = Vec2::new(x, y);
         laid.widgets.push(Widget {
             control: Control::Dial,
             rect: Rect::from_corners(min, min + diameter),
@@ -346,30 +360,21 @@ fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
             words: String::new(),
             look: Look::Dial { place },
         });
-    } else if let (true, Some(place)) = (has_dial, facts.lamp) {
-        let min = Vec2::new(left + (across - diameter) / 2.0, y);
-        laid.widgets.push(Widget {
-            control: Control::Dial,
-            rect: Rect::from_corners(min, min + diameter),
-            icon: None,
-            words: String::new(),
-            look: Look::Dial { place },
-        });
-        y += diameter;
-        laid.widgets.push(Widget {
-            control: Control::Dial,
-            rect: Rect::new(left, y, free.max.x, y + line),
-            icon: None,
-            words: facts.lamp_words.clone(),
-            look: Look::Words,
-        });
-        y += line + gap;
+        if !is_beside {
+            y += diameter;
+            laid.widgets.push(Widget {
+                control: Control::Dial,
+                rect: Rect::new(left, y, free.max.x, y + line),
+                icon: None,
+                words: facts.lamp_words.clone(),
+                look: Look::Words,
+            });
+            y += line + gap;
+        }
     }
     for (k, item) in facts.presets.iter().enumerate() {
-        let at = Vec2::new((k % columns) as f32, (k / columns) as f32);
-        let min = Vec2::new(left + gap, y) + at * Vec2::new(width + gap, target + gap);
-        laid.widgets
-            .push(item.at(Rect::from_corners(min, min + Vec2::new(width, target))));
+        let rect = room.cell(Vec2::new(left + gap, y), [k % columns, k / columns], width);
+        laid.widgets.push(item.at(rect));
     }
     y += rows as f32 * (target + gap);
     for item in sliders {
@@ -405,11 +410,12 @@ fn list(room: &Room, laid: &mut Laid, items: &[Item], bottom: f32) {
         bottom - gap,
     ));
     for (k, item) in items.iter().enumerate() {
-        let at = Vec2::new((k / rows) as f32, (k % rows) as f32);
-        let min =
-            Vec2::new(free.min.x + gap, top + gap) + at * Vec2::new(width + gap, target + gap);
-        laid.widgets
-            .push(item.at(Rect::from_corners(min, min + Vec2::new(width, target))));
+        let rect = room.cell(
+            Vec2::new(free.min.x + gap, top + gap),
+            [k / rows, k % rows],
+            width,
+        );
+        laid.widgets.push(item.at(rect));
     }
 }
 
@@ -437,13 +443,9 @@ fn grid(room: &Room, laid: &mut Laid, items: &[Item], columns: usize) {
     }
     let left = middle.x - (columns as f32 * (width + gap) - gap) / 2.0;
     for (k, item) in buttons.iter().enumerate() {
-        let at = Vec2::new((k % columns) as f32, (k / columns) as f32);
-        let corner =
-            Vec2::new(left, min.y + head + 2.0 * gap) + at * Vec2::new(width + gap, target + gap);
-        laid.widgets.push(item.at(Rect::from_corners(
-            corner,
-            corner + Vec2::new(width, target),
-        )));
+        let corner = Vec2::new(left, min.y + head + 2.0 * gap);
+        let rect = room.cell(corner, [k % columns, k / columns], width);
+        laid.widgets.push(item.at(rect));
     }
 }
 
