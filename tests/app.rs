@@ -11,6 +11,8 @@ mod session;
 #[cfg(target_os = "linux")]
 #[path = "app/window.rs"]
 mod window;
+#[path = "app/words.rs"]
+mod words;
 
 use std::{fs, path::Path};
 

@@ -79,6 +79,8 @@ const MAY_IMPORT: [(&str, &[&str]); 25] = [
         "stage",
         &[
             "bevy", "manifest", "needs", "maps", "optics", "sheet", "colour",
+            // Legends are read in the language of whoever is there.
+            "wording",
         ],
     ),
     ("device", &["bevy"]),

@@ -120,8 +120,22 @@ reading-hint = المس الورقة لتقرأ ما يوجد فيها
 
 at-true-size = بالحجم الحقيقي
 at-true-size-perhaps = بالحجم الحقيقي، إن كانت الشاشة بدقة 96 بكسل في البوصة
+tier-draft = مسودة
+tier-study = دراسة
 no-hotspots = لا تفاصيل على هذا الجانب
 hotspot-leads = المس مرة أخرى: { $title }
+
+## مفتاح الألوان
+
+legend-layer = { $title } · { $share }٪
+legend-luminance = { $value } من سطوع الأبيض
+legend-band = الانعكاسية عند { $band }
+legend-difference = الانعكاسية عند { $first } − { $second }
+legend-bands = أحمر { $red }، أخضر { $green }، أزرق { $blue }
+enhanced-relief = التضاريس فقط، بلا لون
+enhanced-steepness = تضاريس أشد { $times } مرة
+enhanced-contrast = تباين موسّع: من { $low } إلى { $high }٪ من الأبيض
+enhanced-sharpness = زيادة الوضوح: { $share }٪
 
 ## إرشادات
 
@@ -165,6 +179,37 @@ reading = { $quantity }: { $value }
 reading-none = { $quantity }: لا يوجد
 reading-waiting = جارٍ القياس…
 reading-nothing = لا شيء يُقاس هنا
+reading-none-why = { $quantity }: لا يوجد، { $why }
+reading-failed = لم يُقَس: { $why }
+why-off-sheet = إحدى النقاط خارج الورقة
+why-too-wide = هذا أعرض من الورقة
+why-no-picture = لا صورة لهذا الجانب
+why-no-height = لم تُسجَّل تضاريس هذا الجانب
+why-unreadable = لا يمكن قراءة أحد الملفات
+why-gone = لم يعد الرسم أو حالته موجودًا
+why-one-place = نقطتان متقاربتان جدًا
+why-crosses-itself = المحيط يقطع نفسه
+why-no-area = الأركان على خط واحد
+why-no-stroke = لا خط مرسوم هنا
+why-several-strokes = هنا أكثر من خط مرسوم
+why-no-paper = لا ورق خاليًا عند الطرفين
+why-oblique = الخط مائل بمقدار { $degrees }°؛ أدر خط القياس
+why-too-little = القليل جدًا منه على الورقة
+why-coarse = الصورة خشنة جدًا
+why-small = المنطقة صغيرة جدًا
+why-covered = الرسم كثير هناك
+why-faint = لا تبرز أي خطوط
+note-unregistered = لا تُعرف دقة موضع { $file } على الورقة، وهي غير محسوبة
+note-fitted = { $file } مُواءَم وليس مقيسًا: الارتياب هو ارتياب القراءة
+note-assumed = { $file } مُفترَض وليس مقيسًا: الارتياب هو ارتياب القراءة
+note-no-picture = لا صورة لهذا الجانب: الارتياب هو ارتياب التأشير وحده
+note-stroke = قُرئ من { $file } عند نصف العمق، على طول { $length } من الخط
+note-lines = قُرئ من { $file }؛ الاتجاهات مع عقارب الساعة من الأفق
+note-colours = الألوان ألوان { $file } في ضوء النهار (D65)، أيًا كان المصباح
+under-place = { $across } مم من اليسار، { $down } مم من الأعلى
+under-nothing = لا شيء
+under-false-colour = لون زائف، أحمر { $red }، أخضر { $green }، أزرق { $blue }
+under-reflectance = { $value } من الانعكاسية
 quantity-length = الطول
 quantity-area = المساحة
 quantity-perimeter = المحيط
@@ -182,11 +227,15 @@ quantity-difference = الفرق ΔE00
 ## إشعارات
 
 saved = حُفظ كمشهد { $name }
-not-saved = لم يُحفظ
+not-saved = لم يُحفظ: السبب في الطرفية
+not-saved-changed = لم يُحفظ: تغيّر ملف المعرض في هذه الأثناء
+not-saved-read-only = لم يُحفظ: ملف المعرض للقراءة فقط
+not-saved-unwritable = لم يُحفظ: لا يمكن الكتابة في ملف المعرض
+not-saved-at-fault = لم يُحفظ: في ملف المعرض أخطاء
 link-printed = يوجد رابط في الطرفية
 exporting = جارٍ التصدير إلى { $file }…
 exported = صُدّر: { $file }
-not-exported = لم يُصدّر
+not-exported = لم يُصدّر: السبب في الطرفية
 
 ## لوحة المفاتيح والفأرة
 
@@ -195,6 +244,11 @@ keys-wheel = العجلة، + −
 keys-double-click = نقرة مزدوجة
 keys-arrows = الأسهم
 keys-lamp = السحب بالزر الأيمن، L + السحب، Shift + الأسهم
+keyboard-shift = Shift
+keyboard-control = Ctrl
+keyboard-enter = Enter
+keyboard-backspace = Backspace
+keyboard-space = مسطرة المسافة
 key-turn = تدوير الورقة، وتحريكها عند التكبير
 key-zoom = أقرب، أبعد
 key-true-size = الحجم الحقيقي والعودة

@@ -120,8 +120,22 @@ reading-hint = Das Blatt berühren, um zu lesen, was dort ist
 
 at-true-size = Originalgröße
 at-true-size-perhaps = Originalgröße, falls der Bildschirm 96 Pixel pro Zoll hat
+tier-draft = Entwurf
+tier-study = Studie
 no-hotspots = keine Details auf dieser Seite
 hotspot-leads = Noch einmal berühren: { $title }
+
+## Legende
+
+legend-layer = { $title } · { $share } %
+legend-luminance = { $value } der Leuchtdichte von Weiß
+legend-band = Reflexionsgrad bei { $band }
+legend-difference = Reflexionsgrad bei { $first } − { $second }
+legend-bands = Rot { $red }, Grün { $green }, Blau { $blue }
+enhanced-relief = nur Relief, ohne Farbe
+enhanced-steepness = Relief { $times }-mal so steil
+enhanced-contrast = Kontrast gedehnt: { $low } bis { $high } % von Weiß
+enhanced-sharpness = geschärft: { $share } %
 
 ## Hinweise
 
@@ -157,6 +171,37 @@ reading = { $quantity }: { $value }
 reading-none = { $quantity }: keine Angabe
 reading-waiting = wird gemessen …
 reading-nothing = hier ist nichts zu messen
+reading-none-why = { $quantity }: keine Angabe, { $why }
+reading-failed = nicht gemessen: { $why }
+why-off-sheet = eine Stelle liegt neben dem Blatt
+why-too-wide = es ist breiter als das Blatt
+why-no-picture = diese Seite hat kein Bild
+why-no-height = das Relief dieser Seite wurde nicht erfasst
+why-unreadable = eine Datei ist nicht lesbar
+why-gone = die Zeichnung oder ihr Zustand ist nicht mehr da
+why-one-place = zwei Stellen liegen zu nah beieinander
+why-crosses-itself = der Umriss kreuzt sich
+why-no-area = die Ecken liegen auf einer Linie
+why-no-stroke = hier ist kein Strich
+why-several-strokes = hier ist mehr als ein Strich
+why-no-paper = an beiden Enden fehlt leeres Papier
+why-oblique = der Strich läuft { $degrees }° schräg; die Linie drehen
+why-too-little = zu wenig davon liegt auf dem Blatt
+why-coarse = das Bild ist zu grob
+why-small = der Bereich ist zu klein
+why-covered = dort ist zu viel gezeichnet
+why-faint = keine Linien heben sich ab
+note-unregistered = wie genau { $file } auf dem Blatt liegt, ist nicht bekannt und nicht eingerechnet
+note-fitted = { $file } ist angepasst, nicht gemessen: die Unsicherheit ist die des Ablesens
+note-assumed = { $file } ist angenommen, nicht gemessen: die Unsicherheit ist die des Ablesens
+note-no-picture = diese Seite hat kein Bild: die Unsicherheit ist allein die des Zeigens
+note-stroke = aus { $file } in halber Tiefe abgelesen, über { $length } des Strichs
+note-lines = aus { $file } abgelesen; Richtungen im Uhrzeigersinn von der Waagerechten
+note-colours = Farben von { $file } bei Tageslicht (D65), gleich welche Lampe brennt
+under-place = { $across } mm von links, { $down } mm von oben
+under-nothing = nichts
+under-false-colour = Falschfarbe, Rot { $red }, Grün { $green }, Blau { $blue }
+under-reflectance = { $value } Reflexionsgrad
 quantity-length = Länge
 quantity-area = Fläche
 quantity-perimeter = Umfang
@@ -174,11 +219,15 @@ quantity-difference = Unterschied ΔE00
 ## Meldungen
 
 saved = als Ansicht { $name } gespeichert
-not-saved = nicht gespeichert
+not-saved = nicht gespeichert: das Terminal sagt, warum
+not-saved-changed = nicht gespeichert: das Manifest hat sich inzwischen geändert
+not-saved-read-only = nicht gespeichert: das Manifest ist schreibgeschützt
+not-saved-unwritable = nicht gespeichert: das Manifest lässt sich nicht schreiben
+not-saved-at-fault = nicht gespeichert: das Manifest ist fehlerhaft
 link-printed = ein Verweis steht im Terminal
 exporting = wird nach { $file } ausgegeben …
 exported = ausgegeben: { $file }
-not-exported = nicht ausgegeben
+not-exported = nicht ausgegeben: das Terminal sagt, warum
 
 ## Tastatur und Maus
 
@@ -187,6 +236,11 @@ keys-wheel = Mausrad, + −
 keys-double-click = Doppelklick
 keys-arrows = Pfeiltasten
 keys-lamp = rechts ziehen, L + ziehen, Umschalt + Pfeile
+keyboard-shift = Umschalt
+keyboard-control = Strg
+keyboard-enter = Eingabe
+keyboard-backspace = Rücktaste
+keyboard-space = Leertaste
 key-turn = das Blatt drehen, von nahem verschieben
 key-zoom = näher, weiter weg
 key-true-size = Originalgröße und zurück

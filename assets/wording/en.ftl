@@ -126,9 +126,25 @@ reading-hint = Touch the sheet to read what lies there
 
 at-true-size = true size
 at-true-size-perhaps = true size, if the display has 96 pixels an inch
+# How exactly light is computed, where it is not as usual.
+tier-draft = draft
+tier-study = study
 no-hotspots = no details on this side
 # Where a detail leads.
 hotspot-leads = Touch again: { $title }
+
+## Legend
+
+# A layer and how strong it is.
+legend-layer = { $title } · { $share } %
+legend-luminance = { $value } of white's luminance
+legend-band = reflectance at { $band }
+legend-difference = reflectance at { $first } − { $second }
+legend-bands = red { $red }, green { $green }, blue { $blue }
+enhanced-relief = relief only, without colour
+enhanced-steepness = relief { $times } times as steep
+enhanced-contrast = contrast stretched: { $low } to { $high } % of white
+enhanced-sharpness = sharpened: { $share } %
 
 ## Hints
 
@@ -164,6 +180,40 @@ reading = { $quantity }: { $value }
 reading-none = { $quantity }: none
 reading-waiting = measuring …
 reading-nothing = nothing to measure here
+reading-none-why = { $quantity }: none, { $why }
+reading-failed = not measured: { $why }
+# Why nothing was measured; each stands behind "not measured:".
+why-off-sheet = a place lies beside the sheet
+why-too-wide = it is wider than the sheet
+why-no-picture = this side has no picture
+why-no-height = the relief of this side was not recorded
+why-unreadable = a file cannot be read
+why-gone = its drawing or its state is gone
+why-one-place = two places lie too close together
+why-crosses-itself = the outline crosses itself
+why-no-area = its corners lie on one line
+why-no-stroke = there is no stroke here
+why-several-strokes = there is more than one stroke here
+why-no-paper = there is no bare paper at both ends
+why-oblique = the stroke runs { $degrees }° off square; turn the line
+why-too-little = too little of it lies on the sheet
+why-coarse = the picture is too coarse
+why-small = the region is too small
+why-covered = too much is drawn there
+why-faint = no lines stand out
+# What else is to be known of what was measured; $file is a picture.
+note-unregistered = how exactly { $file } lies on the sheet is not known, and not counted in
+note-fitted = { $file } is fitted, not measured: the uncertainty is that of reading it
+note-assumed = { $file } is assumed, not measured: the uncertainty is that of reading it
+note-no-picture = this side has no picture: the uncertainty is that of pointing alone
+note-stroke = read from { $file } at half depth, over { $length } of the stroke
+note-lines = read from { $file }; directions are clockwise from the horizontal
+note-colours = colours are those of { $file } in daylight (D65), whatever lamp is lit
+# What lies under the pointer: a place in mm from the left and the top edge, and what layers say there.
+under-place = { $across } mm across, { $down } mm down
+under-nothing = nothing
+under-false-colour = false colour, red { $red }, green { $green }, blue { $blue }
+under-reflectance = { $value } of reflectance
 quantity-length = length
 quantity-area = area
 quantity-perimeter = perimeter
@@ -181,11 +231,15 @@ quantity-difference = difference ΔE00
 ## Notices
 
 saved = saved as view { $name }
-not-saved = not saved
+not-saved = not saved: the terminal says why
+not-saved-changed = not saved: the manifest has changed meanwhile
+not-saved-read-only = not saved: the manifest is read-only
+not-saved-unwritable = not saved: the manifest cannot be written
+not-saved-at-fault = not saved: the manifest is at fault
 link-printed = a link is in the terminal
 exporting = exporting to { $file } …
 exported = exported: { $file }
-not-exported = not exported
+not-exported = not exported: the terminal says why
 
 ## Keyboard and mouse
 
@@ -194,6 +248,12 @@ keys-wheel = wheel, + −
 keys-double-click = double click
 keys-arrows = arrows
 keys-lamp = right drag, L + drag, Shift + arrows
+# Names on keys.
+keyboard-shift = Shift
+keyboard-control = Ctrl
+keyboard-enter = Enter
+keyboard-backspace = Backspace
+keyboard-space = Space
 key-turn = turn the sheet; move it when zoomed in
 key-zoom = closer, further
 key-true-size = true size and back

@@ -120,8 +120,22 @@ reading-hint = Toque la hoja para leer qué hay en ella
 
 at-true-size = tamaño real
 at-true-size-perhaps = tamaño real, si la pantalla tiene 96 píxeles por pulgada
+tier-draft = borrador
+tier-study = estudio
 no-hotspots = ningún detalle en este lado
 hotspot-leads = Toque otra vez: { $title }
+
+## Leyenda
+
+legend-layer = { $title } · { $share } %
+legend-luminance = { $value } de la luminancia del blanco
+legend-band = reflectancia a { $band }
+legend-difference = reflectancia a { $first } − { $second }
+legend-bands = rojo { $red }, verde { $green }, azul { $blue }
+enhanced-relief = solo relieve, sin color
+enhanced-steepness = relieve { $times } veces más marcado
+enhanced-contrast = contraste ampliado: del { $low } al { $high } % del blanco
+enhanced-sharpness = nitidez: { $share } %
 
 ## Consejos
 
@@ -159,6 +173,37 @@ reading = { $quantity }: { $value }
 reading-none = { $quantity }: ninguno
 reading-waiting = midiendo…
 reading-nothing = aquí no hay nada que medir
+reading-none-why = { $quantity }: ninguno, { $why }
+reading-failed = no medido: { $why }
+why-off-sheet = un punto está fuera de la hoja
+why-too-wide = es más ancho que la hoja
+why-no-picture = este lado no tiene imagen
+why-no-height = el relieve de este lado no se registró
+why-unreadable = un archivo no se puede leer
+why-gone = el dibujo o su estado ya no está
+why-one-place = dos puntos están demasiado cerca
+why-crosses-itself = el contorno se cruza
+why-no-area = las esquinas están en una sola línea
+why-no-stroke = aquí no hay ningún trazo
+why-several-strokes = aquí hay más de un trazo
+why-no-paper = no hay papel desnudo en ambos extremos
+why-oblique = el trazo está { $degrees }° inclinado; gire la línea
+why-too-little = hay demasiado poco sobre la hoja
+why-coarse = la imagen es demasiado tosca
+why-small = la zona es demasiado pequeña
+why-covered = hay demasiado dibujo
+why-faint = no destaca ninguna línea
+note-unregistered = no se sabe con qué exactitud { $file } está sobre la hoja; no se ha contado
+note-fitted = { $file } está ajustado, no medido: la incertidumbre es la de la lectura
+note-assumed = { $file } está supuesto, no medido: la incertidumbre es la de la lectura
+note-no-picture = este lado no tiene imagen: la incertidumbre es solo la de señalar
+note-stroke = leído en { $file } a media profundidad, a lo largo de { $length } del trazo
+note-lines = leído en { $file }; direcciones en sentido horario desde la horizontal
+note-colours = colores de { $file } a la luz del día (D65), sea cual sea la lámpara
+under-place = { $across } mm desde la izquierda, { $down } mm desde arriba
+under-nothing = nada
+under-false-colour = falso color, rojo { $red }, verde { $green }, azul { $blue }
+under-reflectance = { $value } de reflectancia
 quantity-length = longitud
 quantity-area = superficie
 quantity-perimeter = perímetro
@@ -176,11 +221,15 @@ quantity-difference = diferencia ΔE00
 ## Avisos
 
 saved = guardada como vista { $name }
-not-saved = no guardada
+not-saved = no guardada: el terminal dice por qué
+not-saved-changed = no guardada: el manifiesto ha cambiado entretanto
+not-saved-read-only = no guardada: el manifiesto es de solo lectura
+not-saved-unwritable = no guardada: el manifiesto no se puede escribir
+not-saved-at-fault = no guardada: el manifiesto tiene errores
 link-printed = hay un enlace en el terminal
 exporting = exportando a { $file }…
 exported = exportado: { $file }
-not-exported = no exportado
+not-exported = no exportado: el terminal dice por qué
 
 ## Teclado y ratón
 
@@ -189,6 +238,11 @@ keys-wheel = rueda, + −
 keys-double-click = doble clic
 keys-arrows = flechas
 keys-lamp = arrastrar con el derecho, L + arrastrar, Mayús + flechas
+keyboard-shift = Mayús
+keyboard-control = Ctrl
+keyboard-enter = Intro
+keyboard-backspace = Retroceso
+keyboard-space = Espacio
 key-turn = girar la hoja; moverla de cerca
 key-zoom = más cerca, más lejos
 key-true-size = tamaño real y vuelta

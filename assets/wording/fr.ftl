@@ -120,8 +120,22 @@ reading-hint = Touchez la feuille pour lire ce qui s’y trouve
 
 at-true-size = taille réelle
 at-true-size-perhaps = taille réelle, si l’écran a 96 pixels par pouce
+tier-draft = ébauche
+tier-study = étude
 no-hotspots = aucun détail sur cette face
 hotspot-leads = Touchez encore : { $title }
+
+## Légende
+
+legend-layer = { $title } · { $share } %
+legend-luminance = { $value } de la luminance du blanc
+legend-band = réflectance à { $band }
+legend-difference = réflectance à { $first } − { $second }
+legend-bands = rouge { $red }, vert { $green }, bleu { $blue }
+enhanced-relief = relief seul, sans couleur
+enhanced-steepness = relief { $times } fois plus accentué
+enhanced-contrast = contraste étiré : de { $low } à { $high } % du blanc
+enhanced-sharpness = netteté : { $share } %
 
 ## Conseils
 
@@ -159,6 +173,37 @@ reading = { $quantity } : { $value }
 reading-none = { $quantity } : aucun
 reading-waiting = mesure en cours…
 reading-nothing = rien à mesurer ici
+reading-none-why = { $quantity } : aucun, { $why }
+reading-failed = non mesuré : { $why }
+why-off-sheet = un point est hors de la feuille
+why-too-wide = c’est plus large que la feuille
+why-no-picture = cette face n’a pas d’image
+why-no-height = le relief de cette face n’a pas été relevé
+why-unreadable = un fichier est illisible
+why-gone = le dessin ou son état n’est plus là
+why-one-place = deux points sont trop proches
+why-crosses-itself = le contour se croise
+why-no-area = les angles sont sur une même ligne
+why-no-stroke = il n’y a pas de trait ici
+why-several-strokes = il y a plus d’un trait ici
+why-no-paper = il n’y a pas de papier nu aux deux bouts
+why-oblique = le trait est oblique de { $degrees }° ; tournez la ligne
+why-too-little = trop peu se trouve sur la feuille
+why-coarse = l’image est trop grossière
+why-small = la zone est trop petite
+why-covered = il y a trop de dessin
+why-faint = aucune ligne ne ressort
+note-unregistered = on ne sait pas avec quelle précision { $file } est placé sur la feuille ; ce n’est pas compté
+note-fitted = { $file } est ajusté, non mesuré : l’incertitude est celle de la lecture
+note-assumed = { $file } est supposé, non mesuré : l’incertitude est celle de la lecture
+note-no-picture = cette face n’a pas d’image : l’incertitude est celle du pointage seul
+note-stroke = lu dans { $file } à mi-profondeur, sur { $length } du trait
+note-lines = lu dans { $file } ; directions dans le sens horaire depuis l’horizontale
+note-colours = couleurs de { $file } à la lumière du jour (D65), quelle que soit la lampe
+under-place = { $across } mm depuis la gauche, { $down } mm depuis le haut
+under-nothing = rien
+under-false-colour = fausse couleur, rouge { $red }, vert { $green }, bleu { $blue }
+under-reflectance = { $value } de réflectance
 quantity-length = longueur
 quantity-area = surface
 quantity-perimeter = périmètre
@@ -176,11 +221,15 @@ quantity-difference = différence ΔE00
 ## Avis
 
 saved = enregistré comme vue { $name }
-not-saved = non enregistré
+not-saved = non enregistré : le terminal dit pourquoi
+not-saved-changed = non enregistré : le manifeste a changé entre-temps
+not-saved-read-only = non enregistré : le manifeste est en lecture seule
+not-saved-unwritable = non enregistré : le manifeste ne peut être écrit
+not-saved-at-fault = non enregistré : le manifeste contient des erreurs
 link-printed = un lien est dans le terminal
 exporting = export vers { $file }…
 exported = exporté : { $file }
-not-exported = non exporté
+not-exported = non exporté : le terminal dit pourquoi
 
 ## Clavier et souris
 
@@ -188,7 +237,12 @@ keys-drag = glisser
 keys-wheel = molette, + −
 keys-double-click = double-clic
 keys-arrows = flèches
-keys-lamp = glisser à droite, L + glisser, Maj + flèches
+keys-lamp = glisser (bouton droit), L + glisser, Maj + flèches
+keyboard-shift = Maj
+keyboard-control = Ctrl
+keyboard-enter = Entrée
+keyboard-backspace = Retour arrière
+keyboard-space = Espace
 key-turn = tourner la feuille ; la déplacer de près
 key-zoom = plus près, plus loin
 key-true-size = taille réelle et retour

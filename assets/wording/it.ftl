@@ -120,8 +120,22 @@ reading-hint = Tocca il foglio per leggere che cosa c’è
 
 at-true-size = formato reale
 at-true-size-perhaps = formato reale, se lo schermo ha 96 pixel per pollice
+tier-draft = bozza
+tier-study = studio
 no-hotspots = nessun dettaglio su questo lato
 hotspot-leads = Tocca ancora: { $title }
+
+## Legenda
+
+legend-layer = { $title } · { $share }%
+legend-luminance = { $value } della luminanza del bianco
+legend-band = riflettanza a { $band }
+legend-difference = riflettanza a { $first } − { $second }
+legend-bands = rosso { $red }, verde { $green }, blu { $blue }
+enhanced-relief = solo rilievo, senza colore
+enhanced-steepness = rilievo { $times } volte più ripido
+enhanced-contrast = contrasto esteso: dal { $low } al { $high }% del bianco
+enhanced-sharpness = nitidezza: { $share }%
 
 ## Suggerimenti
 
@@ -159,6 +173,37 @@ reading = { $quantity }: { $value }
 reading-none = { $quantity }: nessuno
 reading-waiting = misura in corso…
 reading-nothing = qui non c’è nulla da misurare
+reading-none-why = { $quantity }: nessuno, { $why }
+reading-failed = non misurato: { $why }
+why-off-sheet = un punto è fuori dal foglio
+why-too-wide = è più largo del foglio
+why-no-picture = questo lato non ha immagine
+why-no-height = il rilievo di questo lato non è stato rilevato
+why-unreadable = un file non si può leggere
+why-gone = il disegno o il suo stato non c’è più
+why-one-place = due punti sono troppo vicini
+why-crosses-itself = il contorno si incrocia
+why-no-area = gli angoli stanno su una sola linea
+why-no-stroke = qui non c’è un tratto
+why-several-strokes = qui c’è più di un tratto
+why-no-paper = non c’è carta nuda ai due estremi
+why-oblique = il tratto è obliquo di { $degrees }°; gira la linea
+why-too-little = troppo poco è sul foglio
+why-coarse = l’immagine è troppo grossolana
+why-small = la zona è troppo piccola
+why-covered = c’è troppo disegno
+why-faint = nessuna linea si distingue
+note-unregistered = non si sa con quale precisione { $file } sia sul foglio; non è compreso nell’incertezza
+note-fitted = { $file } è adattato, non misurato: l’incertezza è quella della lettura
+note-assumed = { $file } è ipotizzato, non misurato: l’incertezza è quella della lettura
+note-no-picture = questo lato non ha immagine: l’incertezza è solo quella del puntare
+note-stroke = letto da { $file } a metà profondità, su { $length } del tratto
+note-lines = letto da { $file }; direzioni in senso orario dall’orizzontale
+note-colours = colori di { $file } alla luce del giorno (D65), qualunque sia la lampada
+under-place = { $across } mm da sinistra, { $down } mm dall’alto
+under-nothing = niente
+under-false-colour = falso colore, rosso { $red }, verde { $green }, blu { $blue }
+under-reflectance = { $value } di riflettanza
 quantity-length = lunghezza
 quantity-area = area
 quantity-perimeter = perimetro
@@ -176,11 +221,15 @@ quantity-difference = differenza ΔE00
 ## Avvisi
 
 saved = salvata come veduta { $name }
-not-saved = non salvata
+not-saved = non salvata: il terminale dice perché
+not-saved-changed = non salvata: nel frattempo il manifesto è cambiato
+not-saved-read-only = non salvata: il manifesto è di sola lettura
+not-saved-unwritable = non salvata: il manifesto non si può scrivere
+not-saved-at-fault = non salvata: il manifesto contiene errori
 link-printed = un collegamento è nel terminale
 exporting = esportazione in { $file }…
 exported = esportato: { $file }
-not-exported = non esportato
+not-exported = non esportato: il terminale dice perché
 
 ## Tastiera e mouse
 
@@ -189,6 +238,11 @@ keys-wheel = rotella, + −
 keys-double-click = doppio clic
 keys-arrows = frecce
 keys-lamp = trascinare col destro, L + trascinare, Maiusc + frecce
+keyboard-shift = Maiusc
+keyboard-control = Ctrl
+keyboard-enter = Invio
+keyboard-backspace = Backspace
+keyboard-space = Spazio
 key-turn = girare il foglio; spostarlo da vicino
 key-zoom = più vicino, più lontano
 key-true-size = formato reale e ritorno

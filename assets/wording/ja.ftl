@@ -120,8 +120,22 @@ reading-hint = 紙に触れると、そこにあるものが読めます
 
 at-true-size = 原寸大
 at-true-size-perhaps = 画面が1インチ96画素なら原寸大
+tier-draft = 下描き
+tier-study = 研究用
 no-hotspots = この面に細部の解説はありません
 hotspot-leads = もう一度触れる：{ $title }
+
+## 凡例
+
+legend-layer = { $title } · { $share }%
+legend-luminance = 白の輝度の { $value }
+legend-band = { $band } の反射率
+legend-difference = { $first } − { $second } の反射率
+legend-bands = 赤 { $red }、緑 { $green }、青 { $blue }
+enhanced-relief = 起伏だけ、色なし
+enhanced-steepness = 起伏を{ $times }倍に強調
+enhanced-contrast = コントラスト拡大：白の{ $low }〜{ $high }%
+enhanced-sharpness = 鮮明化：{ $share }%
 
 ## 案内
 
@@ -151,6 +165,37 @@ reading = { $quantity }：{ $value }
 reading-none = { $quantity }：なし
 reading-waiting = 測定中…
 reading-nothing = ここに測れるものはありません
+reading-none-why = { $quantity }：なし（{ $why }）
+reading-failed = 測定できません：{ $why }
+why-off-sheet = 紙の外の場所があります
+why-too-wide = 紙より幅が広すぎます
+why-no-picture = この面には画像がありません
+why-no-height = この面の起伏は記録されていません
+why-unreadable = 読めないファイルがあります
+why-gone = その素描または状態はもうありません
+why-one-place = 二か所が近すぎます
+why-crosses-itself = 輪郭が交差しています
+why-no-area = 角が一直線上にあります
+why-no-stroke = ここに線はありません
+why-several-strokes = ここには線が二本以上あります
+why-no-paper = 両端に何も描かれていない紙がありません
+why-oblique = 線が{ $degrees }°斜めです。向きを変えてください
+why-too-little = 紙の上にある部分が少なすぎます
+why-coarse = 画像が粗すぎます
+why-small = 範囲が小さすぎます
+why-covered = 描かれた部分が多すぎます
+why-faint = 目立つ線がありません
+note-unregistered = { $file } が紙にどれほど正確に重なるかは不明で、不確かさに含まれていません
+note-fitted = { $file } は推定値で、測定値ではありません。不確かさは読み取りのものです
+note-assumed = { $file } は仮定値で、測定値ではありません。不確かさは読み取りのものです
+note-no-picture = この面には画像がなく、不確かさは指し示す位置だけのものです
+note-stroke = { $file } から半分の深さで、線の { $length } にわたって読み取り
+note-lines = { $file } から読み取り。向きは水平から時計回り
+note-colours = 点いている照明によらず、昼光（D65）での { $file } の色
+under-place = 左から { $across } mm、上から { $down } mm
+under-nothing = なし
+under-false-colour = 疑似色、赤 { $red }、緑 { $green }、青 { $blue }
+under-reflectance = 反射率 { $value }
 quantity-length = 長さ
 quantity-area = 面積
 quantity-perimeter = 周の長さ
@@ -168,11 +213,15 @@ quantity-difference = 色差 ΔE00
 ## お知らせ
 
 saved = 見どころ { $name } として保存しました
-not-saved = 保存できませんでした
+not-saved = 保存できませんでした。理由は端末にあります
+not-saved-changed = 保存できませんでした。その間に設定ファイルが変わりました
+not-saved-read-only = 保存できませんでした。設定ファイルは読み取り専用です
+not-saved-unwritable = 保存できませんでした。設定ファイルに書き込めません
+not-saved-at-fault = 保存できませんでした。設定ファイルに誤りがあります
 link-printed = リンクを端末に表示しました
 exporting = { $file } に書き出し中…
 exported = 書き出しました：{ $file }
-not-exported = 書き出せませんでした
+not-exported = 書き出せませんでした。理由は端末にあります
 
 ## キーボードとマウス
 
@@ -181,6 +230,11 @@ keys-wheel = ホイール、+ −
 keys-double-click = ダブルクリック
 keys-arrows = 矢印キー
 keys-lamp = 右ドラッグ、L + ドラッグ、Shift + 矢印
+keyboard-shift = Shift
+keyboard-control = Ctrl
+keyboard-enter = Enter
+keyboard-backspace = Backspace
+keyboard-space = スペース
 key-turn = 紙を傾ける。近づけたときは動かす
 key-zoom = 近づける、遠ざける
 key-true-size = 原寸大と元の大きさ

@@ -20,7 +20,8 @@ use crate::{
     },
     maps::encode,
     readings::{
-        Desk, Disc, PROBE_MM, Reading, ReadingError, Tool, plot,
+        Desk, Disc, Note, PROBE_MM, Reading, ReadingError, Tool,
+        plot::{self, Labels},
         sight::{Seen, Sight},
         table,
     },
@@ -524,7 +525,7 @@ fn say(
     let profile = readings.iter().find(|reading| !reading.samples.is_empty());
     if let (Some(path), Some(profile)) = (plot_file, profile) {
         let title = format!("{}: {}", scene.side.word(), profile.words);
-        let pixels = plot::pixels(&title, &profile.samples, legend::face())
+        let pixels = plot::pixels(&Labels::english(&title), &profile.samples, legend::face())
             .map_err(|error| Failure::Input(Box::new(error)))?;
         let [width, height] = plot::SIZE;
         encode::save_png_rgb8(path, width, height, &pixels, None)?;
@@ -547,7 +548,7 @@ fn say(
     for reading in readings {
         output::result(&reading.words)?;
     }
-    let mut said: Vec<&String> = Vec::new();
+    let mut said: Vec<&Note> = Vec::new();
     for note in readings.iter().flat_map(|reading| &reading.notes) {
         if !said.contains(&note) {
             said.push(note);

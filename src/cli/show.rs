@@ -7,8 +7,9 @@ use crate::{
     installation::{Installation, Use},
     optics::tier::Tier,
     stage::say,
-    visitor::{self, KEYS, Manners, ShowError, ShowOptions, Waits},
+    visitor::{self, Manners, ShowError, ShowOptions, Waits},
     wall::house,
+    wording::{FALLBACK, Spoken, Wordings, catalogue},
 };
 
 /// On a public wall that says nothing else.
@@ -97,7 +98,15 @@ fn ended(code: u8) -> Result<(), Failure> {
 
 /// What the keys do, for help.
 pub fn keys() -> String {
-    let rows = KEYS.map(|(keys, action)| format!("  {keys:38}{action}"));
+    let wordings = Wordings::english();
+    let spoken = Spoken {
+        wordings: &wordings,
+        language: FALLBACK,
+    };
+    let rows = catalogue::KEYS.map(|(keys, action)| {
+        let keys = catalogue::keys(spoken, keys);
+        format!("  {keys:38}{}", spoken.say(action))
+    });
     format!("In the window:\n{}", rows.join("\n"))
 }
 

@@ -1,6 +1,6 @@
 //! Colours of the side's picture, averaged over discs.
 
-use super::{Desk, Disc, Reading, ReadingError, Tool, Value, reading, words};
+use super::{Desk, Disc, Note, Reading, ReadingError, Tool, Value, reading, words};
 use crate::measure::{self, Measured, Patch, Probe, probe};
 
 const NAMES: [[&str; 2]; 3] = [
@@ -66,7 +66,7 @@ impl Desk<'_> {
         &mut self,
         disc: Disc,
         state: Option<usize>,
-    ) -> Result<(Probe, Vec<String>), ReadingError> {
+    ) -> Result<(Probe, Vec<Note>), ReadingError> {
         let (map, picture) = self.albedo(state)?;
         let on_sheet = self.on_sheet()?;
         let patch = Patch::Disc {
@@ -76,10 +76,9 @@ impl Desk<'_> {
         let probe = probe(patch, picture.pixel_mm.min_element(), |place| {
             picture.colour_at(place).filter(|_| on_sheet(place))
         })?;
-        let mut notes = vec![format!(
-            "colours are those of {} under D65, whatever lamp is lit",
-            self.name_of(&map.file)
-        )];
+        let mut notes = vec![Note::Colours {
+            file: self.name_of(&map.file),
+        }];
         notes.extend(self.registration(&map.file).1);
         notes.extend(self.source(&map.file));
         Ok((probe, notes))
@@ -114,7 +113,7 @@ fn compared(
     first: &Probe,
     second: &Probe,
     between: &str,
-    mut notes: Vec<String>,
+    mut notes: Vec<Note>,
 ) -> Reading {
     notes.dedup();
     let difference = Measured {

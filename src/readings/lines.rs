@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Desk, Reading, ReadingError, Tool, Value, reading, words::plus_minus};
+use super::{Desk, Note, Reading, ReadingError, Tool, Value, reading, words::plus_minus};
 use crate::{
     colour::luminance,
     manifest::exhibit::MapFile,
@@ -71,14 +71,12 @@ impl Desk<'_> {
                     read.push(Value::new(spacing, spacing_of(&lines), "mm"));
                     read.push(Value::new(direction, direction_of(&lines), "°"));
                 }
-                Err(why) => read.push(Value::none(spacing, "mm", why.to_string())),
+                Err(why) => read.push(Value::none(spacing, "mm", why)),
             }
         }
-        let mut notes = vec![format!(
-            "read from {}, whose scale is not in the uncertainty; directions are counted from the \
-             horizontal, clockwise as seen",
-            self.name_of(&file)
-        )];
+        let mut notes = vec![Note::Lines {
+            file: self.name_of(&file),
+        }];
         notes.extend(self.source(&file));
         Ok(reading(tool, read, words.join("; "), notes))
     }

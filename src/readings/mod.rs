@@ -9,6 +9,7 @@
 //! | a profile → a plot | [`plot`] |
 //! | readings → a table | [`table`] |
 //! | a place → what overlays and stacks say there | [`Desk::under`] |
+//! | what is to be known beside values, and why there are none | [`Note`], [`Why`] |
 //!
 //! Places are in mm in the side frame of the side that is seen: from the top left corner, x right,
 //! y down. Uncertainties are standard ones (1 σ), see [`crate::measure`]. What is measured is what
@@ -19,6 +20,7 @@ mod lines;
 mod pictures;
 pub mod plot;
 mod relief;
+mod said;
 pub mod sight;
 mod stroke;
 pub mod table;
@@ -36,11 +38,13 @@ use crate::{
         exhibit::{MapFile, SideName, Source},
     },
     maps::{MapError, Rasters},
-    measure::{self, Accuracy, MeasureError, Measured, profile::Relief},
+    measure::{self, Accuracy, MeasureError, Measured, NoLines, profile::Relief},
 };
 use pictures::Pictures;
 pub use pictures::registration_mm;
-pub use under::{Curve, Under};
+pub use said::{Note, Why};
+pub use under::{Curve, Overlaid, Says, Under};
+pub use words::decimals;
 use words::{at, plus_minus};
 
 /// Radius of a probe where none is given, in mm: what a spectrophotometer sees.
@@ -131,6 +135,9 @@ pub struct Value {
     /// Why there is no value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub none: Option<String>,
+    /// The same in short.
+    #[serde(skip)]
+    pub why: Option<Why>,
 }
 
 impl Value {
@@ -147,6 +154,7 @@ impl Value {
             spread: None,
             count: None,
             none: None,
+            why: None,
         }
     }
 
@@ -180,7 +188,7 @@ impl Value {
         }
     }
 
-    fn none(quantity: &'static str, unit: &'static str, why: String) -> Self {
+    fn none(quantity: &'static str, unit: &'static str, why: NoLines) -> Self {
         Self {
             quantity,
             value: None,
@@ -188,7 +196,8 @@ impl Value {
             unit,
             spread: None,
             count: None,
-            none: Some(why),
+            none: Some(why.to_string()),
+            why: Some(why.into()),
         }
     }
 }
@@ -207,7 +216,7 @@ pub struct Reading {
     /// All of it in one line, with its uncertainty.
     pub words: String,
     /// What else is to be known: what was assumed, what is not in the uncertainty.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// Of a profile only.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub samples: Vec<Sample>,
@@ -424,7 +433,7 @@ impl<'e> Desk<'e> {
 
     /// How exactly places are known that are seen in the side's picture and the overlays on it:
     /// by the coarsest of them, and by the one that is registered worst.
-    fn accuracy(&self, screen_mm: f64) -> (Accuracy, Vec<String>) {
+    fn accuracy(&self, screen_mm: f64) -> (Accuracy, Vec<Note>) {
         let drawing = self.drawing();
         let overlays = self.scene.overlays.iter();
         let overlays = overlays
@@ -445,33 +454,25 @@ impl<'e> Desk<'e> {
             notes.extend(note);
         }
         if accuracy.map_mm == 0.0 {
-            let side = self.scene.side.word();
-            notes.push(match screen_mm > 0.0 {
-                true => format!(
-                    "the {side} has no picture: the uncertainty is that of pointing at the screen alone"
-                ),
-                false => format!(
-                    "the {side} has no picture in which places are read: how exactly they are known is \
-                     not known"
-                ),
+            notes.push(Note::NoPicture {
+                side: self.scene.side,
+                pointed: screen_mm > 0.0,
             });
         }
-        notes.sort();
+        notes.sort_by_key(Note::to_string);
         notes.dedup();
         (accuracy, notes)
     }
 
     /// The residual of a picture's control points in mm, 0 where none is known; and what to say
     /// where it should be.
-    fn registration(&self, file: &MapFile) -> (f64, Option<String>) {
+    fn registration(&self, file: &MapFile) -> (f64, Option<Note>) {
         if let Some(residual) = registration_mm(self.exhibit, file) {
             return (residual, None);
         }
-        let note = pictures::is_moved(file, self.drawing().size_mm).then(|| {
-            format!(
-                "how exactly {} lies on the sheet is not known, and not in the uncertainty",
-                self.name_of(file)
-            )
+        let is_moved = pictures::is_moved(file, self.drawing().size_mm);
+        let note = is_moved.then(|| Note::Unregistered {
+            file: self.name_of(file),
         });
         (0.0, note)
     }
@@ -483,16 +484,11 @@ impl<'e> Desk<'e> {
     }
 
     /// What is to be said of a map that was not measured.
-    fn source(&self, file: &MapFile) -> Option<String> {
-        let how = match file.source {
-            Source::Measured => return None,
-            Source::Fitted => "fitted",
-            Source::Assumed => "assumed",
-        };
-        Some(format!(
-            "{} is {how}, not measured: the uncertainty is that of reading it",
-            self.name_of(file)
-        ))
+    fn source(&self, file: &MapFile) -> Option<Note> {
+        (file.source != Source::Measured).then(|| Note::NotMeasured {
+            file: self.name_of(file),
+            source: file.source,
+        })
     }
 }
 
@@ -509,7 +505,7 @@ fn as_known(measured: Measured, unit: &str, accuracy: Accuracy) -> String {
     }
 }
 
-fn reading(tool: &Tool, values: Vec<Value>, words: String, notes: Vec<String>) -> Reading {
+fn reading(tool: &Tool, values: Vec<Value>, words: String, notes: Vec<Note>) -> Reading {
     Reading {
         tool: tool.name(),
         drawing: String::new(),

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Desk, Reading, ReadingError, Tool, Value, reading, words};
+use super::{Desk, Note, Reading, ReadingError, Tool, Value, reading, words};
 use crate::{
     colour::luminance,
     measure::{MeasureError, Measured, Section, stroke_width},
@@ -52,12 +52,11 @@ impl Desk<'_> {
             words::plus_minus(width, " µm"),
             found.oblique_deg.abs()
         );
-        let mut notes = vec![format!(
-            "read from {} at half depth, by {CUTS} cuts over {:.1} mm of the stroke; a soft edge counts \
-             as drawn",
-            self.name_of(&map.file),
-            section.spread_mm
-        )];
+        let mut notes = vec![Note::Stroke {
+            file: self.name_of(&map.file),
+            cuts: CUTS,
+            spread_mm: section.spread_mm,
+        }];
         notes.extend(self.source(&map.file));
         let values = vec![Value::new("width", width, "µm")];
         Ok(reading(tool, values, words, notes))

@@ -26,7 +26,8 @@ pub fn csv<'r>(readings: impl IntoIterator<Item = (usize, &'r Reading)>) -> Stri
         ]
         .map(quoted)
         .join(",");
-        let notes = reading.notes.join("; ");
+        let notes: Vec<String> = reading.notes.iter().map(ToString::to_string).collect();
+        let notes = notes.join("; ");
         for value in &reading.values {
             // Writing into a text does not fail.
             let _ = write!(

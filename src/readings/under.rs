@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
-use super::{Desk, Disc, ReadingError, pictures, words};
+use super::{Desk, Disc, ReadingError, pictures};
 use crate::{
+    colour::lab_from_linear,
     manifest::{
         Wording,
         exhibit::{Member, OverlayKind, Stack},
@@ -18,17 +19,66 @@ const PLACE_MM: f64 = 0.5;
 /// What a place of a side is, says and reflects.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Under {
-    /// A line for the place with its colour, and one for each overlay that is shown there.
-    pub lines: Vec<String>,
+    /// Where it is on the side, in mm.
+    pub place_mm: DVec2,
+    /// CIELAB under D65, where there is a picture.
+    pub lab: Option<[f64; 3]>,
+    /// ΔE00 between the two states that are compared.
+    pub difference: Option<f64>,
+    /// Of the overlays that are shown there.
+    pub overlays: Vec<Overlaid>,
     /// Of every stack of bands on the side.
     pub curves: Vec<Curve>,
+}
+
+/// What one overlay says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlaid {
+    /// Without one, it is called by its id.
+    pub title: Wording,
+    pub id: String,
+    /// `None` where it says nothing.
+    pub says: Option<Says>,
+}
+
+/// As [`Read`], for longer than the exhibit is held.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Says {
+    /// The label of the category that lies there.
+    Category(Wording),
+    Quantity {
+        value: f64,
+        unit: String,
+    },
+    /// CIELAB.
+    Colour([f64; 3]),
+    /// Of a stack, linear sRGB.
+    FalseColour([f64; 3]),
+    /// Of reflectance.
+    Difference(f64),
+}
+
+impl From<Read<'_>> for Says {
+    fn from(read: Read) -> Self {
+        match read {
+            Read::Category(entry) => Self::Category(entry.label.clone()),
+            Read::Quantity { value, unit } => Self::Quantity {
+                value,
+                unit: unit.to_owned(),
+            },
+            Read::Colour(linear_srgb) => Self::Colour(lab_from_linear(linear_srgb)),
+            Read::FalseColour(linear_srgb) => Self::FalseColour(linear_srgb),
+            Read::Difference(value) => Self::Difference(value),
+        }
+    }
 }
 
 /// How much of each wavelength a place reflects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// The stack's title, or else its id.
-    pub title: String,
+    /// The stack's; without one, it is called by its id.
+    pub title: Wording,
+    pub id: String,
     pub points: Vec<CurvePoint>,
 }
 
@@ -43,28 +93,15 @@ impl Desk<'_> {
             path: fault.path,
             error: fault.error,
         };
-        let (exhibit, drawing) = (self.exhibit, self.drawing());
-        let language = self.scene.language.clone().unwrap_or_default();
-        let say = |wording: &Wording| {
-            exhibit
-                .text(wording, &language)
-                .unwrap_or_default()
-                .to_owned()
-        };
-        let titled = |title: &Wording, id: &str| match say(title) {
-            title if title.is_empty() => id.to_owned(),
-            title => title,
-        };
-        let mut lines = vec![format!("{} mm", words::at(place))];
-        if let Some(colour) = self.colour(place, self.scene.state)? {
-            let [l, a, b] = colour.lab;
-            lines[0] += &format!(" · L* {l:.1}, a* {a:.1}, b* {b:.1}");
-        }
+        let drawing = self.drawing();
+        let lab = self.colour(place, self.scene.state)?;
+        let mut difference = None;
         if let Some([first, second]) = self.compared_states()
             && let (Some(a), Some(b)) = (self.colour(place, first)?, self.colour(place, second)?)
         {
-            lines.push(format!("ΔE00 {:.1}", measure::difference(&a, &b)));
+            difference = Some(measure::difference(&a, &b));
         }
+        let mut overlays = Vec::new();
         for (index, opacity) in self.scene.overlays.clone() {
             let overlay = &drawing.overlays[index];
             if opacity <= 0.0 || overlay.side != self.scene.side {
@@ -82,20 +119,31 @@ impl Desk<'_> {
                 }
                 _ => true,
             });
-            let said = reading.map_or_else(|| "nothing".to_owned(), |reading| reading.words(say));
-            lines.push(format!("{}: {said}", titled(&overlay.title, &overlay.id)));
+            overlays.push(Overlaid {
+                title: overlay.title.clone(),
+                id: overlay.id.clone(),
+                says: reading.map(Says::from),
+            });
         }
         let stacks = drawing.stacks.iter();
         let stacks = stacks.filter(|stack| stack.side == self.scene.side);
         let mut curve = |stack: &Stack| -> Result<Curve, ReadingError> {
-            let points = stack.curve(&mut self.rasters, place).map_err(unread)?;
-            let title = titled(&stack.title, &stack.id);
-            Ok(Curve { title, points })
+            Ok(Curve {
+                title: stack.title.clone(),
+                id: stack.id.clone(),
+                points: stack.curve(&mut self.rasters, place).map_err(unread)?,
+            })
         };
         let curves = stacks
             .map(&mut curve)
             .collect::<Result<_, ReadingError>>()?;
-        Ok(Under { lines, curves })
+        Ok(Under {
+            place_mm: place,
+            lab: lab.map(|probe| probe.lab),
+            difference,
+            overlays,
+            curves,
+        })
     }
 
     /// The states of the comparison, if it is of two.

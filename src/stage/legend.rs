@@ -5,8 +5,11 @@ use bevy::prelude::*;
 use super::{Shown, StageSet};
 use crate::{
     colour,
-    manifest::exhibit::{BandMix, CompareMode, Overlay, OverlayKind, Wording},
+    manifest::exhibit::{
+        Band, BandMix, BandView, CompareMode, Enhancement, Overlay, OverlayKind, Wording,
+    },
     maps::{ColourMapName, DIVERGING},
+    wording::{FALLBACK, Spoken, Wordings},
 };
 
 /// Where a face that has more than ASCII usually lies; the first found is used.
@@ -21,6 +24,8 @@ const TEXT_SHARE: f32 = 0.02;
 const TEXT_MIN_PX: f32 = 11.0;
 /// The colours of a difference of two members, from none to the top of its scale.
 pub const DIFFERENCE_COLOURS: ColourMapName = ColourMapName::Magma;
+/// Of numbers, at most.
+const DECIMALS: usize = 6;
 /// Steps of a continuous legend's bar.
 const BAR_STEPS: u32 = 32;
 
@@ -29,17 +34,28 @@ pub struct LegendPlugin;
 
 impl Plugin for LegendPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Startup, load_face).add_systems(
-            Update,
-            draw.in_set(StageSet::Arrange)
-                .run_if(resource_exists::<Shown>),
-        );
+        app.init_resource::<ProgramWords>()
+            .add_systems(Startup, load_face)
+            .add_systems(
+                Update,
+                draw.in_set(StageSet::Arrange)
+                    .run_if(resource_exists::<Shown>),
+            );
     }
 }
 
 /// The face of every text.
 #[derive(Resource, Clone, Default)]
 pub struct Face(pub Handle<Font>);
+
+/// The wordings of the program.
+#[derive(Resource, Default)]
+pub struct ProgramWords(pub Wordings);
+
+/// The language in which the program's own words are read, where somebody reads them in a window; pictures
+/// in files have them in English.
+#[derive(Resource, Debug, Default)]
+pub struct Speaks(pub String);
 
 /// The camera that draws the texts, and the height of its picture in pixels, at the foot of which so
 /// many are somebody else's.
@@ -78,15 +94,22 @@ fn draw(
     mut commands: Commands,
     shown: Res<Shown>,
     face: Option<Res<Face>>,
+    (words, speaks): (Res<ProgramWords>, Option<Res<Speaks>>),
     cameras: Query<(Entity, Ref<TextCamera>)>,
     drawn: Query<Entity, With<Legend>>,
 ) {
     let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
         return;
     };
-    if !shown.is_changed() && !text.is_changed() {
+    let is_spoken_anew = speaks.as_ref().is_some_and(|speaks| speaks.is_changed());
+    if !shown.is_changed() && !text.is_changed() && !is_spoken_anew {
         return;
     }
+    let language = speaks.as_ref().map(|speaks| speaks.0.as_str());
+    let spoken = Spoken {
+        wordings: &words.0,
+        language: language.filter(|tag| !tag.is_empty()).unwrap_or(FALLBACK),
+    };
     for entity in &drawn {
         commands.entity(entity).despawn();
     }
@@ -96,7 +119,7 @@ fn draw(
         .compare
         .as_ref()
         .filter(|comparison| comparison.mode == CompareMode::Difference);
-    let marks = shown.scene.enhance.marks();
+    let marks = enhanced(&shown.scene.enhance, spoken);
     if overlays.is_empty() && difference.is_none() && marks.is_empty() {
         return;
     }
@@ -104,6 +127,7 @@ fn draw(
     let words = Words {
         shown: &shown,
         face: &face.0,
+        spoken,
         size,
     };
     commands
@@ -112,11 +136,24 @@ fn draw(
             UiTargetCamera(camera),
             Node {
                 position_type: PositionType::Absolute,
-                right: Val::Px(size),
+                left: if spoken.from_right() {
+                    Val::Px(size)
+                } else {
+                    Val::Auto
+                },
+                right: if spoken.from_right() {
+                    Val::Auto
+                } else {
+                    Val::Px(size)
+                },
                 bottom: Val::Px(size + text.foot),
                 padding: UiRect::all(Val::Px(size * 0.7)),
                 row_gap: Val::Px(size * 0.35),
                 flex_direction: FlexDirection::Column,
+                align_items: match spoken.from_right() {
+                    true => AlignItems::FlexEnd,
+                    false => AlignItems::FlexStart,
+                },
                 ..default()
             },
             BackgroundColor(Color::srgba(0.05, 0.05, 0.05, 0.85)),
@@ -127,16 +164,20 @@ fn draw(
             }
             if let Some(comparison) = difference {
                 let top = match comparison.full_luminance {
-                    Some(full) => format!("{full} of white's luminance"),
-                    None => format!("{} ΔE00", comparison.full_delta_e),
+                    Some(full) => {
+                        let value = spoken.short(full, DECIMALS);
+                        spoken.fill("legend-luminance", &[("value", value.into())])
+                    }
+                    None => format!("{} ΔE00", spoken.short(comparison.full_delta_e, DECIMALS)),
                 };
                 words.scale(rows, DIFFERENCE_COLOURS, "0".to_owned(), top);
             }
             for (overlay, opacity) in &overlays {
-                rows.spawn(words.line(format!(
-                    "{} · {:.0} %",
-                    words.say(&overlay.title, &overlay.id),
-                    opacity * 100.0
+                let title = words.say(&overlay.title, &overlay.id);
+                let share = (opacity * 100.0).round();
+                rows.spawn(words.line(spoken.fill(
+                    "legend-layer",
+                    &[("title", title.into()), ("share", share.into())],
                 )));
                 match &overlay.kind {
                     OverlayKind::Categorical(entries) => {
@@ -153,12 +194,13 @@ fn draw(
                         unit,
                         range,
                     } => {
-                        let top = format!("{} {unit}", range[1]);
-                        words.scale(rows, *colour_map, range[0].to_string(), top);
+                        let [low, high] = range.map(|end| spoken.short(end, DECIMALS));
+                        words.scale(rows, *colour_map, low, format!("{high} {unit}"));
                     }
                     OverlayKind::Bands(view) => {
-                        rows.spawn(words.line(view.words()));
+                        rows.spawn(words.line(bands(view, spoken)));
                         if let BandMix::Difference { full } = view.mix {
+                            let full = spoken.short(full, DECIMALS);
                             words.scale(rows, DIVERGING, format!("−{full}"), format!("+{full}"));
                         }
                     }
@@ -188,10 +230,66 @@ fn overlays(shown: &Shown) -> Vec<(Overlay, f64)> {
     all
 }
 
+/// What is enhanced, a line each: [`Enhancement::marks`] in the language that is read.
+fn enhanced(enhance: &Enhancement, spoken: Spoken) -> Vec<String> {
+    let percent = |share: f64| (share * 100.0).round();
+    let mut lines = Vec::new();
+    if enhance.relief_only {
+        lines.push(spoken.say("enhanced-relief"));
+    }
+    if enhance.exaggerate != 1.0 {
+        let times = spoken.number(enhance.exaggerate, 1);
+        lines.push(spoken.fill("enhanced-steepness", &[("times", times.into())]));
+    }
+    if let Some(stretch) = enhance.stretch {
+        let [low, high] = stretch.to_array().map(percent);
+        let args = [("low", low.into()), ("high", high.into())];
+        lines.push(spoken.fill("enhanced-contrast", &args));
+    }
+    if enhance.sharpen > 0.0 {
+        let share = percent(enhance.sharpen);
+        lines.push(spoken.fill("enhanced-sharpness", &[("share", share.into())]));
+    }
+    lines
+}
+
+/// Which bands are shown as which colours: [`BandView::words`] in the language that is read.
+fn bands(view: &BandView, spoken: Spoken) -> String {
+    let nm = |band: &Band| format!("{} nm", spoken.short(band.wavelength_nm, DECIMALS));
+    match &view.mix {
+        BandMix::Difference { .. } => {
+            let ends = [view.bands.first(), view.bands.last()];
+            let [first, second] = ends.map(|band| band.map(nm).unwrap_or_default().into());
+            let args = [("first", first), ("second", second)];
+            spoken.fill("legend-difference", &args)
+        }
+        BandMix::Colour(_) if view.bands.len() == 1 => {
+            let band = nm(&view.bands[0]);
+            spoken.fill("legend-band", &[("band", band.into())])
+        }
+        BandMix::Colour(weights) => {
+            let [red, green, blue] = [0, 1, 2].map(|c| {
+                let taken = view.bands.iter().zip(weights);
+                let taken = taken.filter(|(_, weight)| weight[c] != 0.0);
+                let sum: Vec<String> = taken
+                    .map(|(band, weight)| match weight[c] {
+                        1.0 => nm(band),
+                        weight => format!("{} × {}", spoken.short(weight, DECIMALS), nm(band)),
+                    })
+                    .collect();
+                sum.join(" + ").into()
+            });
+            let args = [("red", red), ("green", green), ("blue", blue)];
+            spoken.fill("legend-bands", &args)
+        }
+    }
+}
+
 /// Bundles of one legend.
 struct Words<'a> {
     shown: &'a Shown,
     face: &'a Handle<Font>,
+    spoken: Spoken<'a>,
     size: f32,
 }
 
@@ -206,6 +304,10 @@ impl Words<'_> {
 
     fn row(&self) -> impl Bundle {
         Node {
+            flex_direction: match self.spoken.from_right() {
+                true => FlexDirection::RowReverse,
+                false => FlexDirection::Row,
+            },
             align_items: AlignItems::Center,
             column_gap: Val::Px(self.size * 0.5),
             ..default()
@@ -222,7 +324,14 @@ impl Words<'_> {
     ) {
         rows.spawn(self.row()).with_children(|row| {
             row.spawn(self.line(low));
-            row.spawn(Node::default()).with_children(|bar| {
+            let way = Node {
+                flex_direction: match self.spoken.from_right() {
+                    true => FlexDirection::RowReverse,
+                    false => FlexDirection::Row,
+                },
+                ..default()
+            };
+            row.spawn(way).with_children(|bar| {
                 for step in 0..BAR_STEPS {
                     bar.spawn(self.step(map, step));
                 }
@@ -269,4 +378,33 @@ pub fn line(text: String, face: &Handle<Font>, size: f32) -> impl Bundle {
         },
         TextColor(Color::srgb(0.92, 0.91, 0.88)),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+
+    #[test]
+    fn english_legends_say_what_files_say_and_german_ones_do_not() {
+        let wordings = Wordings::shipped();
+        let [english, german] = ["en", "de"].map(|language| Spoken {
+            wordings: &wordings,
+            language,
+        });
+        let all = Enhancement {
+            relief_only: true,
+            exaggerate: 2.5,
+            stretch: Some(DVec2::new(0.1, 0.9)),
+            sharpen: 0.4,
+        };
+        assert_eq!(enhanced(&all, english), all.marks());
+        let german = enhanced(&all, german);
+        assert!(german[1].contains("2,5"), "{german:?}");
+        for (german, english) in german.iter().zip(all.marks()) {
+            assert_ne!(*german, english);
+        }
+        assert!(enhanced(&Enhancement::default(), english).is_empty());
+    }
 }

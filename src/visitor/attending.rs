@@ -88,7 +88,7 @@ pub fn attend(
             attract.touch();
             interface.go_home();
             intents.write(Intent::Home);
-            hand.go_home(languages.spoken(0));
+            hand.go_home(languages.spoken(None));
             hand.calm(interface.calm);
         }
         return;
@@ -106,7 +106,7 @@ pub fn attend(
             attract::Due::Home => {
                 interface.go_home();
                 intents.write(Intent::Home);
-                hand.go_home(languages.spoken(0));
+                hand.go_home(languages.spoken(None));
                 hand.calm(interface.calm);
             }
             attract::Due::Stop(stop) => {

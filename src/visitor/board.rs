@@ -1,4 +1,4 @@
-//! The board at the upper right: the tool in the hand, what was measured, and what lies under the
+//! The board at the upper corner where reading ends: the tool in the hand, what was measured, and what lies under the
 //! pointer.
 
 use bevy::{
@@ -9,16 +9,30 @@ use bevy::{
 
 use super::{
     caption::{self, Texts},
+    controls::{Interface, draw::Controls},
+    glass::Glass,
     measuring::{Kind, Laid, Measuring, Said},
-    tools::Pointer,
+    phrases,
+    pointing::Pointer,
+    speech::Speech,
 };
 use crate::{
-    readings::{Curve, plot},
-    stage::legend::{self, Face, TextCamera, line, text_size},
+    manifest::readout::CurvePoint,
+    readings::{
+        Curve,
+        plot::{self, Labels},
+    },
+    stage::{
+        Shown,
+        legend::{self, Face, TextCamera, line, text_size},
+    },
+    wording::{self, Spoken},
 };
 
 /// Widest line, in heights of its text.
 const WIDTH: f32 = 34.0;
+/// And of a narrow picture's width.
+const SHARE: f32 = 0.46;
 const QUIET: f32 = 0.85;
 /// As many of the last that were measured.
 const LAST: usize = 5;
@@ -34,20 +48,27 @@ pub struct Board;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Written {
     lines: Vec<String>,
-    curves: Vec<Curve>,
-    /// The number of the profile that is plotted.
-    profile: Option<u64>,
+    /// Each with what stands over it.
+    curves: Vec<(String, Vec<CurvePoint>)>,
+    profile: Option<Profile>,
+    from_right: bool,
     size: f32,
+    /// Of the widest line, in logical pixels.
+    width: f32,
 }
 
-/// The number of the profile that was plotted last, and its plot.
-type Plotted = Option<(u64, Handle<Image>)>;
+/// The number of the profile that is plotted, and how its decimals are separated.
+type Profile = (u64, char);
+
+/// The profile that was plotted last, and its plot.
+type Plotted = Option<(Profile, Handle<Image>)>;
 
 /// Writes what changed.
 pub fn write(
     mut commands: Commands,
     (measuring, pointer, mut texts): (Res<Measuring>, Res<Pointer>, ResMut<Texts>),
-    face: Option<Res<Face>>,
+    (shown, controls, glass): (Res<Shown>, Res<Controls>, Res<Glass>),
+    (speech, interface, face): (Speech, Res<Interface>, Option<Res<Face>>),
     cameras: Query<(Entity, &TextCamera)>,
     boards: Query<Entity, With<Board>>,
     mut images: ResMut<Assets<Image>>,
@@ -56,16 +77,24 @@ pub fn write(
     let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
         return;
     };
-    let size = text_size(text.height) * QUIET;
+    let spoken = speech.spoken();
+    let size = text_size(text.height) * QUIET * interface.text_factor();
     let profile = profile(&measuring);
+    let curve = |curve: &Curve| {
+        let title = phrases::curve(curve, &shown, spoken);
+        (title, curve.points.clone())
+    };
+    let separator = wording::separator(spoken.language);
     let wanted = Written {
-        lines: lines(&measuring, &pointer),
+        lines: lines(&measuring, &pointer, (&shown, &controls), spoken),
         curves: match pointer.under() {
-            Some(Ok(under)) => under.curves.clone(),
+            Some(Ok(under)) => under.curves.iter().map(curve).collect(),
             _ => Vec::new(),
         },
-        profile: profile.as_ref().map(|(laid, _)| laid.number),
+        profile: profile.map(|laid| (laid.number, separator)),
+        from_right: spoken.from_right(),
         size,
+        width: (size * WIDTH).min(glass.size.x * SHARE),
     };
     if *last == wanted {
         return;
@@ -76,17 +105,30 @@ pub fn write(
     }
     *plotted = plotted
         .take()
-        .filter(|(number, _)| Some(*number) == wanted.profile);
-    if let (None, Some((laid, title))) = (&*plotted, profile)
+        .filter(|(profile, _)| Some(*profile) == wanted.profile);
+    // Units are the same in every language; the line above says the rest, in letters of its own.
+    let labels = Labels {
+        title: "",
+        along: "mm",
+        up: "µm",
+        separator,
+    };
+    if let (None, Some(laid)) = (&*plotted, profile)
         && let Said::Read(reading) = &laid.said
-        && let Ok(pixels) = plot::pixels(&title, &reading.samples, legend::face())
+        && let Ok(pixels) = plot::pixels(&labels, &reading.samples, legend::face())
     {
-        *plotted = Some((laid.number, images.add(picture(&pixels))));
+        *plotted = Some(((laid.number, separator), images.add(picture(&pixels))));
     }
     if !wanted.lines.is_empty() || !wanted.curves.is_empty() {
+        let side = |wanted: bool| if wanted { Val::Px(size) } else { Val::Auto };
         let node = Node {
-            right: Val::Px(size),
+            left: side(wanted.from_right),
+            right: side(!wanted.from_right),
             top: Val::Px(size),
+            align_items: match wanted.from_right {
+                true => AlignItems::FlexEnd,
+                false => AlignItems::FlexStart,
+            },
             ..caption::panel_node(size)
         };
         let panel = (
@@ -98,21 +140,21 @@ pub fn write(
         commands.spawn(panel).with_children(|rows| {
             for text in &wanted.lines {
                 let wrapped = Node {
-                    max_width: Val::Px(size * WIDTH),
+                    max_width: Val::Px(wanted.width),
                     ..default()
                 };
                 rows.spawn((line(text.clone(), &face.0, size), wrapped));
             }
-            for curve in &wanted.curves {
-                draw_curve(rows, curve, &face.0, size);
+            for (title, points) in &wanted.curves {
+                draw_curve(rows, (title, points), &face.0, size);
             }
             if let Some((_, image)) = &*plotted {
                 let [width, height] = plot::SIZE.map(|side| side as f32);
                 rows.spawn((
                     ImageNode::new(image.clone()),
                     Node {
-                        width: Val::Px(size * WIDTH),
-                        height: Val::Px(size * WIDTH * height / width),
+                        width: Val::Px(wanted.width),
+                        height: Val::Px(wanted.width * height / width),
                         ..default()
                     },
                 ));
@@ -122,64 +164,56 @@ pub fn write(
     *last = wanted;
 }
 
-/// The last profile that was measured, if nothing was measured after it, with its title.
-fn profile(measuring: &Measuring) -> Option<(&Laid, String)> {
+/// The last profile that was measured, if nothing was measured after it.
+fn profile(measuring: &Measuring) -> Option<&Laid> {
     let last = measuring.laid().last()?;
-    match &last.said {
-        Said::Read(reading) if last.kind == Kind::Profile => {
-            let title = format!("{}: {}", last.on.side.word(), reading.words);
-            Some((last, title))
-        }
-        _ => None,
-    }
+    let is_read = matches!(last.said, Said::Read(_));
+    (is_read && last.kind == Kind::Profile).then_some(last)
 }
 
-fn lines(measuring: &Measuring, pointer: &Pointer) -> Vec<String> {
+fn lines(
+    measuring: &Measuring,
+    pointer: &Pointer,
+    (shown, controls): (&Shown, &Controls),
+    spoken: Spoken,
+) -> Vec<String> {
     let mut lines = Vec::new();
-    if let Some(kind) = measuring.kind() {
-        lines.push(kind.words().to_owned());
-        lines.push("Backspace takes back, M is the next tool, Esc puts it away".to_owned());
+    // Among controls it is said what is to be done, and which tool is in the hand.
+    if let Some(kind) = measuring
+        .kind()
+        .filter(|_| controls.laid.widgets.is_empty())
+    {
+        let [name, hint] = phrases::tool_ids(kind);
+        lines.push(format!("{} · {}", spoken.say(name), spoken.say(hint)));
     }
     let laid = measuring.laid();
     let first = laid.len().saturating_sub(LAST);
     for (index, laid) in laid.iter().enumerate().skip(first) {
-        let said = match &laid.said {
-            Said::Waiting => "…".to_owned(),
-            Said::Read(reading) => reading.words.clone(),
-            Said::Nothing(why) => format!("nothing: {why}"),
-        };
-        let state = laid.on.state.as_ref();
-        let state = state.map_or(String::new(), |state| format!(" ({state})"));
-        let side = laid.on.side.word();
-        lines.push(format!("{}  {side}{state}, {said}", index + 1));
+        lines.push(phrases::line(index + 1, laid, shown, spoken));
     }
     if let Some(Said::Read(reading)) = laid.last().map(|laid| &laid.said) {
-        lines.extend(reading.notes.iter().cloned());
+        let notes = reading.notes.iter();
+        lines.extend(notes.map(|note| phrases::note(note, spoken)));
     }
     if pointer.is_read() {
         match pointer.under() {
-            Some(Ok(under)) => lines.extend(under.lines.iter().cloned()),
-            Some(Err(why)) => lines.push(why.clone()),
-            None => lines.push("point at the sheet to read what lies there".to_owned()),
+            Some(Ok(under)) => lines.extend(phrases::under(under, shown, spoken)),
+            Some(Err(why)) => lines.push(phrases::failed(*why, spoken)),
+            None => lines.push(spoken.say("reading-hint")),
         }
     }
     lines
 }
 
-/// A curve of reflectance: a bar for each band, with its wavelengths below and its values above.
-fn draw_curve(rows: &mut ChildSpawnerCommands, curve: &Curve, face: &Handle<Font>, size: f32) {
-    let ends = [curve.points.first(), curve.points.last()];
-    let said: Vec<String> = ends
-        .into_iter()
-        .flatten()
-        .map(|point| match point.reflectance {
-            Some(reflectance) => format!("{} nm {reflectance:.3}", point.wavelength_nm),
-            None => format!("{} nm –", point.wavelength_nm),
-        })
-        .collect();
-    let title = format!("{}: {}", curve.title, said.join(" … "));
-    rows.spawn(line(title, face, size));
-    let room = 0.8 * WIDTH / curve.points.len().max(1) as f32;
+/// A curve of reflectance: a bar for each band, below what stands over it.
+fn draw_curve(
+    rows: &mut ChildSpawnerCommands,
+    (title, points): (&str, &[CurvePoint]),
+    face: &Handle<Font>,
+    size: f32,
+) {
+    rows.spawn(line(title.to_owned(), face, size));
+    let room = 0.8 * WIDTH / points.len().max(1) as f32;
     let chart = Node {
         align_self: AlignSelf::FlexStart,
         height: Val::Px(size * CURVE_HEIGHT),
@@ -190,7 +224,7 @@ fn draw_curve(rows: &mut ChildSpawnerCommands, curve: &Curve, face: &Handle<Font
     };
     let axis = BorderColor::all(Color::srgb(0.7, 0.7, 0.7));
     rows.spawn((chart, axis)).with_children(|bars| {
-        for point in &curve.points {
+        for point in points {
             let share = point.reflectance.unwrap_or_default().clamp(0.0, 1.0) as f32;
             bars.spawn((
                 Node {

@@ -5,12 +5,10 @@ use bevy::prelude::*;
 use super::{
     attract::Attract,
     comparing,
-    controls::{
-        Interface,
-        draw::{Controls, Languages, ProgramWords},
-        facts::{self, Spoken},
-    },
+    controls::{Interface, draw::Controls, facts},
     hand::Hand,
+    notice::Notice,
+    speech::Speech,
 };
 use crate::{
     manifest::exhibit::{Hotspot, Member},
@@ -19,6 +17,7 @@ use crate::{
         Shown,
         legend::{Face, TextCamera, line, text_size},
     },
+    wording::{Spoken, catalogue},
 };
 
 /// Widest line, in heights of its text.
@@ -28,54 +27,13 @@ const TITLE: f32 = 1.25;
 /// The caption's text, against that of the legend.
 const QUIET: f32 = 0.85;
 
-/// What the keys do, for the list of them and for the manual.
-pub const KEYS: [(&str, &str); 31] = [
-    ("drag", "turn the sheet; move it when zoomed in"),
-    ("wheel, + −", "zoom"),
-    ("double click", "true size and back"),
-    ("arrows", "move when zoomed in"),
-    ("F", "turn the sheet over"),
-    ("right drag, L + drag, Shift + arrows", "move the lamp"),
-    ("1  2  3", "lamp overhead, at 45°, raking"),
-    ("S, Shift + S", "next state, back"),
-    ("O", "overlays: none, each, all"),
-    ("[  ]", "fainter, stronger overlays"),
-    ("G, Shift + G", "next category alone, back"),
-    ("X, Shift + X", "next comparison, back"),
-    (",  .", "move the curtain, more or less of a blend"),
-    ("<  >", "turn the curtain, larger loupe, ΔE00 or light"),
-    ("9  0", "less, more light through the sheet"),
-    (
-        "R, Shift + R, B, Z",
-        "relief only, steeper, contrast, sharper",
-    ),
-    ("N, P", "next scene, back"),
-    ("H", "the scene as it was"),
-    ("I", "hotspots: click on one to open it, twice to go there"),
-    ("J, Shift + J, Enter", "next hotspot, back, to its scene"),
-    ("Tab, Shift + Tab, Space", "next control, back, touch it"),
-    ("U", "controls"),
-    ("M, Shift + M", "next measuring tool, back: click to lay it"),
-    (
-        "Enter, Backspace",
-        "end a path, take back a place or a measurement",
-    ),
-    ("V", "what lies under the pointer"),
-    ("W, Ctrl + S", "save the view as a scene"),
-    ("K", "print a link to the view"),
-    ("E, Shift + E", "export a figure, or its light as EXR"),
-    ("T, Shift + T", "next tier of accuracy, back"),
-    ("C", "caption"),
-    ("F11, Esc", "full screen, put away, close or quit"),
-];
-
 /// Which texts are wanted.
 #[derive(Resource, Debug)]
 pub struct Texts {
     pub caption: bool,
     pub keys: bool,
     /// What became of a wish, until the next one.
-    pub notice: Option<String>,
+    pub notice: Option<Notice>,
 }
 
 impl Default for Texts {
@@ -96,7 +54,8 @@ pub struct Panel;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawn {
     caption: Vec<String>,
-    keys: bool,
+    /// Rows of keys and what they do; none where nobody asked.
+    keys: Vec<[String; 2]>,
     from_right: bool,
     foot: f32,
     size: f32,
@@ -107,7 +66,7 @@ pub fn draw(
     mut commands: Commands,
     (shown, hand, texts): (Res<Shown>, Res<Hand>, Res<Texts>),
     (attract, interface, controls): (Res<Attract>, Res<Interface>, Res<Controls>),
-    (words, languages): (Res<ProgramWords>, Res<Languages>),
+    speech: Speech,
     (face, mut drawn): (Option<Res<Face>>, Local<Drawn>),
     cameras: Query<(Entity, &TextCamera)>,
     panels: Query<Entity, With<Panel>>,
@@ -116,10 +75,7 @@ pub fn draw(
         return;
     };
     let size = text_size(text.height) * QUIET * interface.text_factor();
-    let spoken = Spoken {
-        wordings: &words.0,
-        language: languages.tag(interface.language),
-    };
+    let spoken = speech.spoken();
     let invitation = attract.is_touring();
     let wanted = Drawn {
         caption: match hand.open_hotspot() {
@@ -128,10 +84,13 @@ pub fn draw(
             None => Vec::new(),
         }
         .into_iter()
-        .chain(texts.notice.clone())
+        .chain(texts.notice.as_ref().map(|notice| notice.words(spoken)))
         .chain(invitation.then(|| spoken.say("attract-invitation")))
         .collect(),
-        keys: texts.keys,
+        keys: match texts.keys {
+            true => keys(spoken),
+            false => Vec::new(),
+        },
         from_right: spoken.from_right(),
         foot: text.foot,
         size,
@@ -167,23 +126,36 @@ pub fn draw(
                 }
             });
     }
-    if wanted.keys {
+    if !wanted.keys.is_empty() {
+        let side = |wanted: bool| if wanted { Val::Px(size) } else { Val::Auto };
         let node = Node {
-            left: Val::Px(size),
+            left: side(!wanted.from_right),
+            right: side(wanted.from_right),
             top: Val::Px(size),
+            flex_direction: match wanted.from_right {
+                true => FlexDirection::RowReverse,
+                false => FlexDirection::Row,
+            },
+            column_gap: Val::Px(size * 1.5),
             ..panel_node(size)
+        };
+        let column = || Node {
+            flex_direction: FlexDirection::Column,
+            row_gap: Val::Px(size * 0.35),
+            align_items: match wanted.from_right {
+                true => AlignItems::FlexEnd,
+                false => AlignItems::FlexStart,
+            },
+            ..default()
         };
         commands
             .spawn((Panel, UiTargetCamera(camera), node, BackgroundColor(DARK)))
-            .with_children(|rows| {
-                for (keys, what) in KEYS {
-                    rows.spawn(Node::default()).with_children(|row| {
-                        row.spawn(Node {
-                            width: Val::Px(size * 19.0),
-                            ..default()
-                        })
-                        .with_child(line(keys.into(), &face.0, size));
-                        row.spawn(line(what.into(), &face.0, size));
+            .with_children(|columns| {
+                for k in 0..2 {
+                    columns.spawn(column()).with_children(|rows| {
+                        for row in &wanted.keys {
+                            rows.spawn(line(row[k].clone(), &face.0, size));
+                        }
                     });
                 }
             });
@@ -203,6 +175,13 @@ pub(super) fn panel_node(size: f32) -> Node {
         flex_direction: FlexDirection::Column,
         ..default()
     }
+}
+
+/// Keys and what they do.
+fn keys(spoken: Spoken) -> Vec<[String; 2]> {
+    let rows = catalogue::KEYS.iter();
+    rows.map(|(keys, what)| [catalogue::keys(spoken, keys), spoken.say(what)])
+        .collect()
 }
 
 /// The caption's lines, the title first.
@@ -231,8 +210,11 @@ fn lines(shown: &Shown, hand: &Hand, spoken: Spoken) -> Vec<String> {
     };
     // What everybody sees who asked for nothing needs no name.
     let tier = match hand.tier() {
-        tier if tier == Tier::default() => "",
-        tier => tier.name(),
+        tier if tier == Tier::default() => String::new(),
+        Tier::Draft => spoken.say("tier-draft"),
+        Tier::Study => spoken.say("tier-study"),
+        // The names of their authors, or of what they are compared with.
+        tier => tier.name().to_owned(),
     };
     let compared = shown.scene.compare.as_ref().map(|comparison| {
         let names = comparison.of.iter().map(|of| name(shown, *of, spoken));
@@ -263,7 +245,7 @@ fn lines(shown: &Shown, hand: &Hand, spoken: Spoken) -> Vec<String> {
         &lamp,
         &through,
         &size,
-        tier,
+        &tier,
         &hotspots,
     ];
     lines.push(joined(&parts));

@@ -5,13 +5,9 @@ use bevy::prelude::*;
 
 use super::{
     caption::{self, Texts},
-    controls::{
-        Interface,
-        draw::{Languages, ProgramWords},
-        facts::Spoken,
-    },
     glass::Glass,
     marks::{self, Ink, Mark, Marks},
+    speech::Speech,
 };
 use crate::{
     manifest::{
@@ -19,6 +15,7 @@ use crate::{
         exhibit::{CompareMode, Comparison, Exhibit, Member, Scene},
     },
     stage::Shown,
+    wording::Spoken,
 };
 
 /// In the order in which a key goes through them.
@@ -158,14 +155,11 @@ pub fn take_turns(comparison: &mut Comparison) {
 /// Lays edges and names over members that have parts of the picture, in a window only.
 pub fn lay(
     (shown, texts): (Res<Shown>, Res<Texts>),
-    (words, languages, interface): (Res<ProgramWords>, Res<Languages>, Res<Interface>),
+    speech: Speech,
     glass: Res<Glass>,
     mut marks: ResMut<Marks>,
 ) {
-    let spoken = Spoken {
-        wordings: &words.0,
-        language: languages.tag(interface.language),
-    };
+    let spoken = speech.spoken();
     let mut wanted = Vec::new();
     if let Some(comparison) = shown.scene.compare.as_ref().filter(|c| !c.mode.combines()) {
         let picture = (shown.aspect, glass.size);

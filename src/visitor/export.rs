@@ -15,7 +15,9 @@ use std::{
 use bevy::prelude::*;
 use glam::UVec2;
 
-use super::{caption::Texts, glass::Glass, hand::Hand, intent::Intent, measuring::Measuring};
+use super::{
+    caption::Texts, glass::Glass, hand::Hand, intent::Intent, measuring::Measuring, notice::Notice,
+};
 use crate::{
     figure::bar::LEAST_PX,
     manifest::{Exhibit, SaveError},
@@ -67,10 +69,10 @@ pub fn export(
     let exports = exports.bypass_change_detection();
     for done in exports.done() {
         texts.notice = Some(match done {
-            Ok(path) => format!("exported: {}", path.display()),
+            Ok(path) => Notice::Exported(path),
             Err(words) => {
                 say(format_args!("recto: {words}"));
-                "not exported: the terminal says why".to_owned()
+                Notice::NotExported
             }
         });
     }
@@ -81,10 +83,10 @@ pub fn export(
         let size = glass.pixels.max(UVec2::from(LEAST_PX));
         texts.notice = Some(
             match exports.begin(&hand, &measuring, size, linear, &waker) {
-                Ok(path) => format!("exporting to {} …", path.display()),
+                Ok(path) => Notice::Exporting(path),
                 Err(error) => {
                     say(format_args!("recto: {error}"));
-                    "not exported: the terminal says why".to_owned()
+                    Notice::NotExported
                 }
             },
         );

@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::view::wrapped;
 use crate::{
     manifest::{exhibit::SideName, hotspot::contains},
-    readings::{Disc, PROBE_MM, Reading, Tool, sight::Seen},
+    readings::{Disc, PROBE_MM, Reading, Tool, Why, sight::Seen},
 };
 
 /// Places nearer to each other are one, in pixels of the picture.
@@ -40,21 +40,6 @@ impl Kind {
         Self::Probe,
         Self::Difference,
     ];
-
-    /// What it is, and how it is laid.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Ruler => "ruler: click on two places",
-            Self::Path => "path: click on its places, Enter or a double click ends it",
-            Self::Area => "area: click on its corners, Enter or a double click closes it",
-            Self::Angle => "angle: click on three places, its corner is the second",
-            Self::Profile => "relief: click on both ends of a line",
-            Self::Lines => "laid and chain lines: click on two corners of a region without holes",
-            Self::Stroke => "stroke: click on paper on both sides of it",
-            Self::Probe => "colour: click on a place",
-            Self::Difference => "difference of colours: click on two places of one sheet",
-        }
-    }
 
     /// Whether it ends only when somebody says so.
     fn is_open(self) -> bool {
@@ -118,7 +103,7 @@ pub enum Said {
     Waiting,
     Read(Reading),
     /// Why there is no reading.
-    Nothing(String),
+    Nothing(Why),
 }
 
 /// A tool that lies on the sheet.
@@ -311,25 +296,6 @@ impl Measuring {
     }
 }
 
-impl Laid {
-    /// Beside it on the sheet: its first value.
-    pub fn label(&self) -> String {
-        match &self.said {
-            Said::Waiting => "…".to_owned(),
-            Said::Read(reading) => {
-                let first = reading.values.first();
-                let value = first.map(|value| value.words()).unwrap_or_default();
-                match self.kind {
-                    Kind::Probe => format!("L* {value}"),
-                    Kind::Difference => format!("ΔE00 {value}"),
-                    _ => value,
-                }
-            }
-            Said::Nothing(_) => "?".to_owned(),
-        }
-    }
-}
-
 /// The corners of an upright rectangle between two opposite ones.
 pub fn rectangle([a, b]: [DVec2; 2]) -> Vec<DVec2> {
     vec![a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)]
@@ -460,7 +426,7 @@ mod tests {
         let number = measuring.laid()[0].number;
         measuring.take_back();
         assert!(measuring.laid().is_empty());
-        measuring.hear(number, Said::Nothing(String::new()));
+        measuring.hear(number, Said::Nothing(Why::Gone));
         measuring.take_back();
         // Numbers are never given twice: an answer that comes late is nobody's.
         lay(&mut measuring, 1.0, 1.0, SideName::Recto);

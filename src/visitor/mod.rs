@@ -9,8 +9,10 @@
 //! | comparisons in the hand | `comparing` |
 //! | hotspots under the hand | `hotspots` |
 //! | the view as a scene or a link | `saving` |
-//! | tools in the hand, and what they read | `measuring`, `reader`, `tools` |
-//! | what was measured, and what lies under the pointer | `board` |
+//! | tools in the hand, what they read, and what lies under the pointer | `measuring`, `reader`, `tools`, `pointing` |
+//! | the language that is read | `speech` |
+//! | what became of a wish, what was read, and what is to be done, in words | `notice`, `phrases`, `hints` |
+//! | all that was read, in a corner | `board` |
 //! | lines and words that lie on the sheet | `marks` |
 //! | the view as a figure, and what was measured as a table | `export` |
 //! | the picture that people stand before | `glass` |
@@ -35,6 +37,7 @@ mod export;
 mod foresight;
 pub mod glass;
 pub mod hand;
+mod hints;
 mod hotspots;
 mod input;
 mod intent;
@@ -43,9 +46,13 @@ pub mod letters;
 mod marks;
 mod measuring;
 mod motion;
+mod notice;
 mod pace;
+mod phrases;
+mod pointing;
 mod reader;
 mod saving;
+mod speech;
 mod staff;
 mod tools;
 mod touches;
@@ -59,7 +66,6 @@ use std::{
 
 pub use attending::{Closed, Due};
 pub use attract::{Attract, Doing, Waits};
-pub use caption::KEYS;
 pub use display::NoDisplay;
 pub use hand::{Hand, Serving};
 pub use intent::Intent;

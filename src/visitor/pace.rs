@@ -15,6 +15,7 @@ use super::{
     controls::{Interface, draw::Controls, thumbs::Thumbs},
     foresight::Observed,
     hand::Hand,
+    hints::Hints,
     staff::StaffPanel,
 };
 use crate::stage::{Arranged, Library, Shown, composite::Composite};
@@ -52,7 +53,7 @@ pub struct Pace {
 
 /// Draws on while something moves or is on its way, and then not at all.
 pub fn rest(
-    (shown, texts, controls): (Res<Shown>, Res<Texts>, Res<Controls>),
+    (shown, texts, controls, hints): (Res<Shown>, Res<Texts>, Res<Controls>, Res<Hints>),
     (interface, thumbs, attract): (Res<Interface>, Res<Thumbs>, Res<Attract>),
     (staff, house, alarm): (Res<StaffPanel>, Res<House>, Option<Res<Alarm>>),
     (closed, due): (Res<Closed>, Res<Due>),
@@ -78,6 +79,7 @@ pub fn rest(
         || texts.is_changed()
         || controls.is_changed()
         || interface.is_changed()
+        || hints.is_changed()
         || thumbs.is_changed()
         || closed.is_changed()
         || hand.is_moving()
@@ -115,6 +117,7 @@ pub fn rest(
                 .next_s(&attending::stop_seconds(&hand))
                 .map(Duration::from_secs_f64),
             staff.next(),
+            hints.next(),
             house.0.scan_s.map(Duration::from_secs_f64),
             house.0.kiosk.then_some(HEARTBEAT),
             due.0,

@@ -11,8 +11,8 @@ use glam::DVec2;
 use super::measuring::Said;
 use crate::{
     manifest::exhibit::{Exhibit, Scene},
-    readings::{Desk, ReadingError, Shelf, Tool, Under},
-    stage::Waker,
+    readings::{Desk, ReadingError, Shelf, Tool, Under, Why},
+    stage::{Waker, say},
 };
 
 /// What is to be read.
@@ -32,7 +32,7 @@ pub enum Errand {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
     Tool(u64, Said),
-    Under(DVec2, Result<Under, String>),
+    Under(DVec2, Result<Under, Why>),
 }
 
 /// An errand with the scene whose side is read.
@@ -115,9 +115,12 @@ fn answer(asked: &Asked, shelf: &mut Shelf) -> Answer {
         scene,
         errand,
     } = asked;
-    let say = |error: ReadingError| match error {
-        ReadingError::Map { path, error } => exhibit.map_fault(&path, &error).to_string(),
-        error => error.to_string(),
+    // Visitors are told in short; a file at fault is the curator's.
+    let why = |error: &ReadingError| {
+        if let ReadingError::Map { path, error } = error {
+            say(exhibit.map_fault(path, error));
+        }
+        Why::from(error)
     };
     let held = std::mem::take(shelf);
     // A file that a decoder trips over is the file's fault, and no reason to go.
@@ -131,14 +134,13 @@ fn answer(asked: &Asked, shelf: &mut Shelf) -> Answer {
             } => {
                 let said = match desk.read(tool, *screen_mm) {
                     Ok(reading) => Said::Read(reading),
-                    Err(errors) => {
-                        let words: Vec<String> = errors.into_iter().map(say).collect();
-                        Said::Nothing(words.join("; "))
-                    }
+                    Err(errors) => Said::Nothing(errors.first().map_or(Why::Nothing, why)),
                 };
                 Answer::Tool(*number, said)
             }
-            Errand::Under(place) => Answer::Under(*place, desk.under(*place).map_err(say)),
+            Errand::Under(place) => {
+                Answer::Under(*place, desk.under(*place).map_err(|error| why(&error)))
+            }
         };
         (answer, desk.clear())
     }));
@@ -147,12 +149,9 @@ fn answer(asked: &Asked, shelf: &mut Shelf) -> Answer {
             *shelf = cleared;
             answer
         }
-        Err(_) => {
-            let words = "a map could not be read".to_owned();
-            match errand {
-                Errand::Tool { number, .. } => Answer::Tool(*number, Said::Nothing(words)),
-                Errand::Under(place) => Answer::Under(*place, Err(words)),
-            }
-        }
+        Err(_) => match errand {
+            Errand::Tool { number, .. } => Answer::Tool(*number, Said::Nothing(Why::Unreadable)),
+            Errand::Under(place) => Answer::Under(*place, Err(Why::Unreadable)),
+        },
     }
 }

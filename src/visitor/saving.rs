@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use bevy::prelude::*;
 use glam::UVec2;
 
-use super::{caption::Texts, glass::Glass, hand::Hand, intent::Intent};
+use super::{caption::Texts, glass::Glass, hand::Hand, intent::Intent, notice::Notice};
 use crate::{
     manifest::{Fingerprint, SaveAs, SaveError, Wording},
     stage::say,
@@ -27,10 +27,10 @@ pub fn keep(
     for intent in intents.read() {
         let said = match intent {
             Intent::SaveView => match save(&hand, &mut saved) {
-                Ok(id) => Some(format!("saved as scene {id}")),
+                Ok(id) => Some(Notice::Saved(id)),
                 Err(error) => {
                     say(format_args!("recto: {error}"));
-                    Some(in_short(&error).to_owned())
+                    Some(Notice::NotSaved((&error).into()))
                 }
             },
             Intent::Link => {
@@ -38,11 +38,11 @@ pub fn keep(
                     Ok(command) => {
                         // Nobody may be reading there any more.
                         let _ = writeln!(io::stdout(), "{command}");
-                        Some("a link is in the terminal".to_owned())
+                        Some(Notice::Linked)
                     }
                     Err(error) => {
                         say(format_args!("recto: {error}"));
-                        Some(in_short(&error).to_owned())
+                        Some(Notice::NotSaved((&error).into()))
                     }
                 }
             }
@@ -86,18 +86,6 @@ fn quoted(text: &str) -> String {
     match text.chars().all(plain) {
         true => text.to_owned(),
         false => format!("'{}'", text.replace('\'', r"'\''")),
-    }
-}
-
-/// For the caption; the terminal has it all.
-fn in_short(error: &SaveError) -> &'static str {
-    match error {
-        SaveError::Changed(_) => "not saved: the manifest has changed meanwhile",
-        SaveError::ReadOnly(_) => "not saved: the manifest is read-only",
-        SaveError::Write { .. } => "not saved: the manifest cannot be written",
-        SaveError::Form { .. } => "not saved: the terminal says why",
-        SaveError::Faults(_) => "not saved: the manifest is at fault",
-        SaveError::Id(_) | SaveError::Unwritable { .. } => "not saved: the terminal says why",
     }
 }
 

@@ -1,5 +1,5 @@
-//! Tools and the pointer on the sheet that is shown: from wishes to what is asked of the maps, and
-//! from what they say to marks over the picture.
+//! Tools on the sheet that is shown: from wishes to what is asked of the maps, and from what they say to
+//! marks over the picture.
 
 use std::sync::Arc;
 
@@ -10,83 +10,19 @@ use super::{
     caption::Texts,
     glass::Glass,
     hand::Hand,
-    input::Devices,
     intent::Intent,
-    marks::{self, InView, Ink, Mark, Marks, Shape},
+    marks::{self, Ink, Mark, Marks, Shape},
     measuring::{self, Kind, Laid, Measuring, OnSide, Said},
+    phrases,
+    pointing::{Pointer, View},
     reader::{Answer, Errand, Reader},
+    speech::Speech,
 };
 use crate::{
-    manifest::{
-        exhibit::{Exhibit, Scene, SideName},
-        frames::other_side,
-    },
-    readings::{
-        Under,
-        sight::{Seen, Sight},
-    },
+    manifest::exhibit::{Exhibit, Scene, SideName},
+    readings::Why,
     stage::{Shown, Waker},
 };
-
-/// What lies under the pointer.
-#[derive(Resource, Debug, Default)]
-pub struct Pointer {
-    /// Somebody asked for what lies there.
-    wanted: bool,
-    /// Where it is on the sheet.
-    seen: Option<Seen>,
-    /// What was asked for last, of which version.
-    asked: Option<(Arc<Exhibit>, Scene, DVec2)>,
-    /// And what is there.
-    under: Option<Result<Under, String>>,
-}
-
-impl Pointer {
-    /// Whether somebody asked for what lies there.
-    pub fn is_read(&self) -> bool {
-        self.wanted
-    }
-
-    /// What lies under it, or why that is not known; nothing beside the sheet.
-    pub fn under(&self) -> Option<&Result<Under, String>> {
-        self.under.as_ref().filter(|_| self.wanted)
-    }
-}
-
-/// The drawing's sheets in the picture, in logical pixels.
-struct View {
-    sheets: Vec<InView>,
-    sight: Option<Sight>,
-}
-
-impl View {
-    fn new(shown: &Shown, shape: &Shape, size: Vec2) -> Self {
-        let drawing = shown.exhibit.drawing_of(&shown.scene);
-        let sheets = marks::in_view(shown);
-        let lying = sheets.iter().map(|sheet| sheet.lying).collect();
-        let sight = shape
-            .of(drawing)
-            .map(|surface| Sight::of(drawing, surface.clone(), size.as_dvec2(), lying));
-        Self { sheets, sight }
-    }
-
-    /// What is seen of the sheet itself, without the margin of its mesh.
-    fn seen(&self, shown: &Shown, at: Vec2) -> Option<Seen> {
-        let seen = self.sight.as_ref()?.seen(at.as_dvec2())?;
-        let size_mm = shown.exhibit.drawing_of(&shown.scene).size_mm;
-        measuring::is_on(seen.mm, size_mm).then_some(seen)
-    }
-
-    /// The scene whose side is read where something is seen.
-    fn scene(&self, shown: &Shown, sheet: usize, side: SideName) -> Scene {
-        Scene {
-            side,
-            // What two states are told apart by.
-            compare: shown.scene.compare.clone(),
-            ..self.sheets[sheet].scene.clone()
-        }
-    }
-}
 
 /// Whether a wish is the tool's that is in the hand, and nobody else's.
 pub fn is_for_tool(measuring: &Measuring, intent: Intent) -> bool {
@@ -122,8 +58,7 @@ pub fn follow(
         if version.is_some() && !measuring.laid().is_empty() {
             let laid = measuring.reread().to_vec();
             for laid in laid.iter().filter(|laid| ask(laid).is_none()) {
-                let gone = "its drawing or its state is gone".to_owned();
-                measuring.hear(laid.number, Said::Nothing(gone));
+                measuring.hear(laid.number, Said::Nothing(Why::Gone));
             }
         }
         *version = Some(hand.exhibit().clone());
@@ -138,13 +73,9 @@ pub fn follow(
             Intent::TakeBack => measuring.take_back(),
             Intent::Home => {
                 measuring.clear();
-                pointer.wanted = false;
+                pointer.rest();
             }
-            Intent::ReadOut => {
-                pointer.wanted = !pointer.wanted;
-                pointer.asked = None;
-                pointer.under = None;
-            }
+            Intent::ReadOut => pointer.switch(),
             Intent::Drag { .. } => measuring.bypass_change_detection().forget_double_click(),
             intent if is_for_tool(&measuring, intent) => {
                 let view = View::new(&shown, &shape, glass.size);
@@ -168,7 +99,7 @@ pub fn follow(
             _ => {}
         }
     }
-    if measuring.is_idle() && !pointer.wanted {
+    if measuring.is_idle() && !pointer.is_read() {
         reader.bypass_change_detection().rest();
     }
 }
@@ -212,89 +143,18 @@ pub fn hear(
     for answer in reader.bypass_change_detection().answers() {
         match answer {
             Answer::Tool(number, said) => measuring.hear(number, said),
-            Answer::Under(place, under) => {
-                let asked = pointer.asked.as_ref().map(|(.., place)| *place);
-                if asked == Some(place) {
-                    pointer.under = Some(under);
-                }
-            }
+            Answer::Under(place, under) => pointer.hear(place, under),
         }
-    }
-}
-
-/// Points: shows the same place of every other sheet, and asks what lies there.
-pub fn point(
-    (devices, shown, shape, hand): (Res<Devices>, Res<Shown>, Res<Shape>, Res<Hand>),
-    glass: Res<Glass>,
-    (mut pointer, mut marks): (ResMut<Pointer>, ResMut<Marks>),
-    (mut reader, waker): (ResMut<Reader>, Res<Waker>),
-) {
-    if !(devices.is_changed() || shown.is_changed() || shape.is_changed() || pointer.is_changed()) {
-        return;
-    }
-    let view = View::new(&shown, &shape, glass.size);
-    let seen = devices.pointer().and_then(|at| view.seen(&shown, at));
-    if pointer.seen != seen {
-        pointer.bypass_change_detection().seen = seen;
-        pointer.set_changed();
-    }
-    let mut rings = Vec::new();
-    if let (Some(seen), Some(sight)) = (&seen, &view.sight) {
-        for (number, sheet) in view.sheets.iter().enumerate() {
-            if number == seen.sheet {
-                continue;
-            }
-            let drawing = shown.exhibit.drawing_of(&shown.scene);
-            // A place of the recto lies over one of the verso.
-            let place = match sheet.side == seen.side {
-                true => seen.mm,
-                false => other_side(seen.mm, drawing.size_mm, drawing.flip),
-            };
-            rings.extend(sight.pixel(number, sheet.side, place).map(|at| Mark::Ring {
-                middle: at.as_vec2(),
-                ink: Ink::Open,
-            }));
-        }
-    }
-    if marks.pointer != rings {
-        marks.pointer = rings;
-    }
-    if !pointer.wanted || hand.is_moving() {
-        return;
-    }
-    let Some(seen) = seen else {
-        let silent = pointer.bypass_change_detection();
-        let had = silent.under.take().is_some() | silent.asked.take().is_some();
-        if had {
-            pointer.set_changed();
-        }
-        return;
-    };
-    let scene = view.scene(&shown, seen.sheet, seen.side);
-    // Where eye and lamps are makes no difference to a map.
-    let asked = pointer.asked.as_ref().is_some_and(|(version, was, place)| {
-        let same = |a: &Scene, b: &Scene| {
-            (a.drawing, a.side, a.state) == (b.drawing, b.side, b.state)
-                && a.overlays == b.overlays
-                && a.categories == b.categories
-                && a.compare.as_ref().map(|c| &c.of) == b.compare.as_ref().map(|c| &c.of)
-        };
-        Arc::ptr_eq(version, hand.exhibit()) && *place == seen.mm && same(was, &scene)
-    });
-    if !asked {
-        let asked = (hand.exhibit().clone(), scene.clone(), seen.mm);
-        pointer.bypass_change_detection().asked = Some(asked);
-        let errand = Errand::Under(seen.mm);
-        reader.ask(hand.exhibit().clone(), scene, errand, &waker);
     }
 }
 
 /// Lays what is measured over the picture.
 pub fn lay(
     (measuring, pointer, shown, shape): (Res<Measuring>, Res<Pointer>, Res<Shown>, Res<Shape>),
-    glass: Res<Glass>,
+    (glass, speech): (Res<Glass>, Speech),
     mut marks: ResMut<Marks>,
 ) {
+    let spoken = speech.spoken();
     let drawing = shown.exhibit.drawing_of(&shown.scene);
     let surface = shape.of(drawing).map(|surface| &**surface);
     let picture = (shown.aspect, glass.size);
@@ -342,7 +202,7 @@ pub fn lay(
             if let Some(at) = last.filter(|_| is_own) {
                 wanted.push(Mark::Words {
                     at: marks::px(at, glass.size),
-                    text: laid.label(),
+                    text: phrases::label(laid, spoken),
                     is_centred: false,
                 });
             }
@@ -350,7 +210,7 @@ pub fn lay(
         let laying = measuring.laying().zip(measuring.kind());
         if let Some((laying, kind)) = laying.filter(|(l, _)| is_here(&l.on.drawing, l.on.side)) {
             // To where the next place would be.
-            let next = pointer.seen.filter(|seen| seen.side == laying.on.side);
+            let next = pointer.seen().filter(|seen| seen.side == laying.on.side);
             let mut places = laying.places.clone();
             places.extend(next.map(|seen| seen.mm));
             let (line, closed) = outline(kind, &places);
@@ -382,8 +242,19 @@ mod tests {
     use bevy::window::WindowEvent;
 
     use super::*;
-    use crate::visitor::{controls, input::Ground};
-    use crate::{maps::encode, optics::tier::Tier, visitor::hand::Picture};
+    use crate::{
+        maps::encode,
+        optics::tier::Tier,
+        visitor::{
+            controls::{
+                self, Interface,
+                draw::{Languages, ProgramWords},
+            },
+            hand::Picture,
+            input::{Devices, Ground},
+            pointing::point,
+        },
+    };
 
     const SIZE: Vec2 = Vec2::new(400.0, 200.0);
     /// How long a small picture may take to be read on a slow machine.
@@ -424,6 +295,9 @@ mod tests {
             .insert_resource(hand)
             .insert_resource(devices)
             .insert_resource(Waker(Arc::new(|| {})))
+            .insert_resource(Interface::new(true, controls::Reading::default()))
+            .init_resource::<ProgramWords>()
+            .init_resource::<Languages>()
             .init_resource::<Measuring>()
             .init_resource::<Pointer>()
             .init_resource::<Texts>()
@@ -553,7 +427,7 @@ mod tests {
         click(&mut app, 180.0, 50.0);
         let laid = until(&mut app, last);
         assert_eq!(laid.kind, Kind::Profile);
-        assert!(matches!(&laid.said, Said::Nothing(why) if why.contains("height map")));
+        assert_eq!(laid.said, Said::Nothing(Why::NoHeight));
     }
 
     #[test]
@@ -566,11 +440,12 @@ mod tests {
         );
         wish(&mut app, Intent::ReadOut);
         let under = |app: &App| Some(app.world().resource::<Pointer>().under()?.clone().unwrap());
-        let read = until(&mut app, under).lines;
-        assert!(read[0].starts_with("50,25 mm · L* 8"), "{read:?}");
+        let read = until(&mut app, under);
+        assert_eq!(read.place_mm, DVec2::new(50.0, 25.0));
+        assert!(read.lab.is_some_and(|[l, ..]| l > 80.0), "{read:?}");
         app.world_mut().resource_mut::<Hand>().apply(Intent::Flip);
         app.update();
-        let dark = |app: &App| under(app).filter(|under| under.lines[0].contains("L* 1"));
+        let dark = |app: &App| under(app).filter(|under| under.lab.is_some_and(|[l, ..]| l < 20.0));
         until(&mut app, dark);
         // Beside the sheet nothing lies under it.
         points_at(&mut app, -50.0, 50.0);

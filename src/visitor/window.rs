@@ -45,6 +45,7 @@ use super::{
     foresight::{Foresight, foresee},
     glass::Glass,
     hand::{Hand, Picture, Retreat},
+    hints::{self, Hints},
     hotspots,
     input::Devices,
     intent::Intent,
@@ -52,10 +53,12 @@ use super::{
     marks::{self, Marks, Shape},
     measuring::Measuring,
     pace::{self, Pace},
+    pointing::{self, Pointer},
     reader::Reader,
     saving::{self, Saved},
+    speech,
     staff::{StaffPanel, StaffWish},
-    tools::{self, Pointer},
+    tools,
 };
 use crate::{
     device,
@@ -64,7 +67,7 @@ use crate::{
         Arranged, Library, Shown, StagePlugin, StageSet, Waker,
         camera::{camera_bundle, without_clusters},
         composite::{PictureCamera, PictureSize},
-        legend::TextCamera,
+        legend::{Speaks, TextCamera},
         reload::{ReloadPlugin, Reread},
         say,
     },
@@ -182,6 +185,8 @@ impl Plugin for VisitorPlugin {
             .insert_resource(House(manners.clone()))
             .insert_resource(languages)
             .init_resource::<ProgramWords>()
+            .init_resource::<Speaks>()
+            .init_resource::<Hints>()
             .init_resource::<FontFolder>()
             .init_resource::<Reach>()
             .init_resource::<Glass>()
@@ -219,8 +224,10 @@ impl Plugin for VisitorPlugin {
                         attending::read_devices,
                         operate::operate,
                         attending::serve_staff,
+                        speech::speak,
                         steer,
                         tools::follow,
+                        hints::follow,
                         follow_wishes,
                         saving::keep,
                         export::export,
@@ -230,7 +237,7 @@ impl Plugin for VisitorPlugin {
                     (
                         (fall_back, foresee, marks::learn).chain(),
                         (comparing::lay, hotspots::lay).chain(),
-                        (tools::hear, tools::point, tools::lay).chain(),
+                        (tools::hear, pointing::point, tools::lay).chain(),
                         marks::draw,
                         draw::arrange,
                         board::write,

@@ -1,5 +1,7 @@
 //! The languages that the program comes with, and what it says in them.
 
+use super::Spoken;
+
 /// Tag and Fluent text of each, English first: it decides which messages there are and which
 /// variables they have.
 pub const SHIPPED: [(&str, &str); 7] = [
@@ -118,6 +120,31 @@ pub const KEYS: [(&str, &str); 31] = [
     ("C", "key-caption"),
     ("F11, Esc", "key-escape"),
 ];
+
+/// Names on keys, as [`KEYS`] has them, with the wordings of those that other keyboards name otherwise.
+pub const KEY_NAMES: [(&str, &str); 5] = [
+    ("Shift", "keyboard-shift"),
+    ("Ctrl", "keyboard-control"),
+    ("Enter", "keyboard-enter"),
+    ("Backspace", "keyboard-backspace"),
+    ("Space", "keyboard-space"),
+];
+
+/// What stands on keys in a row of [`KEYS`], as keyboards of the language name them.
+pub fn keys(spoken: Spoken, keys: &str) -> String {
+    if keys.starts_with("keys-") {
+        return spoken.say(keys);
+    }
+    let name = |word: &str| {
+        let known = KEY_NAMES.iter().find(|(name, _)| *name == word);
+        known.map_or_else(|| word.to_owned(), |(_, id)| spoken.say(id))
+    };
+    let pieces = keys.split_inclusive([' ', ',']).map(|piece| {
+        let word = piece.trim_end_matches([' ', ',']);
+        name(word) + &piece[word.len()..]
+    });
+    pieces.collect()
+}
 
 /// The wording of a quantity that a reading names.
 pub fn quantity(name: &str) -> Option<&'static str> {

@@ -60,7 +60,7 @@ const KNOWN: [&str; 27] = [
 
 /// What the program fills in, and notices and readings have, in every language.
 const FILLED_IN: &str =
-    "0123456789.,:;+−±×°%²µΔ·|–—…“”‘’()[]<>/ ABCEKLMRSTabcdefghijklmnopqrstuvwxyz";
+    "0123456789.,:;+−±×°%²µΔ*_-·|–—…“”‘’()[]<>/ ABCEKLMRSTabcdefghijklmnopqrstuvwxyz";
 
 /// A script's tag, the package with a font for it, and its letters from … to.
 type WrittenIn = ([u8; 4], &'static str, &'static [(char, char)]);

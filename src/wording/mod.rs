@@ -7,7 +7,8 @@
 //! | a message in a language, or as near to it as there is | [`Wordings::say`] |
 //! | the museum's folder, with all its faults | [`Wordings::read`] |
 //! | ids and variables of a file, with their places | `source` |
-//! | which way a language is written | [`direction`] |
+//! | which way a language is written, and its numbers | [`direction`], [`number`] |
+//! | all of this in one language | [`Spoken`] |
 //! | which font files have its letters | [`fonts`] |
 //!
 //! What an exhibit says is written in its manifest; messages for the curator and the technician
@@ -36,6 +37,8 @@ pub const FALLBACK: &str = "en";
 /// A language's name in itself; the one message that no other language stands in for.
 const LANGUAGE_NAME: &str = "language-name";
 
+/// Encloses what has a direction of its own (FIRST STRONG ISOLATE, POP DIRECTIONAL ISOLATE).
+const ISOLATED: [char; 2] = ['\u{2068}', '\u{2069}'];
 /// Begins a line from the right (RIGHT-TO-LEFT MARK).
 const RIGHT_TO_LEFT: char = '\u{200f}';
 
@@ -115,6 +118,14 @@ impl Wordings {
             .filter_map(|(tag, text)| Language::new(tag, [*text]));
         Self {
             languages: languages.collect(),
+        }
+    }
+
+    /// What the program comes with in English alone, for the command line.
+    pub fn english() -> Self {
+        let [(tag, text), ..] = SHIPPED;
+        Self {
+            languages: Language::new(tag, [text]).into_iter().collect(),
         }
     }
 
@@ -200,6 +211,56 @@ impl Wordings {
         };
         let is_it = |language: &&Language| language.tag.chars().map(same).eq(tag.chars().map(same));
         self.languages.iter().find(is_it)
+    }
+}
+
+/// The words that are read, and in which language.
+#[derive(Clone, Copy, Debug)]
+pub struct Spoken<'w> {
+    pub wordings: &'w Wordings,
+    pub language: &'w str,
+}
+
+impl Spoken<'_> {
+    /// A wording without variables.
+    pub fn say(&self, id: &str) -> String {
+        self.wordings.label(self.language, id).to_owned()
+    }
+
+    /// A wording with variables.
+    pub fn fill(&self, id: &str, args: &[(&str, Value)]) -> String {
+        self.wordings.say(self.language, id, args)
+    }
+
+    /// Whether it is read from the right.
+    pub fn from_right(&self) -> bool {
+        direction(self.language) == Direction::RightToLeft
+    }
+
+    /// A number with so many decimals.
+    pub fn number(&self, value: f64, decimals: usize) -> String {
+        number(self.language, value, decimals)
+    }
+
+    /// A number with as few decimals as tell it from others of so many.
+    pub fn short(&self, value: f64, decimals: usize) -> String {
+        let text = self.number(value, decimals);
+        match text.contains(['.', ',']) {
+            true => text
+                .trim_end_matches('0')
+                .trim_end_matches(['.', ','])
+                .to_owned(),
+            false => text,
+        }
+    }
+
+    /// `text` of another language, or a value, beside others on one line: it does not turn what is around it.
+    pub fn isolated(&self, text: &str) -> String {
+        let [begin, end] = ISOLATED;
+        match self.from_right() && !text.is_empty() {
+            true => format!("{begin}{text}{end}"),
+            false => text.to_owned(),
+        }
     }
 }
 
@@ -319,6 +380,28 @@ pub fn direction(language: &str) -> Direction {
     }
 }
 
+/// `value` with so many decimals, as `language` separates them.
+pub fn number(language: &str, value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let digits = text.trim_start_matches('-');
+    // What rounds to nothing has no sign.
+    let is_nothing = digits.chars().all(|c| matches!(c, '0' | '.'));
+    let sign = match text.len() > digits.len() && !is_nothing {
+        true => "−",
+        false => "",
+    };
+    let separator = separator(language).to_string();
+    format!("{sign}{}", digits.replace('.', &separator))
+}
+
+/// What separates decimals in `language`.
+pub fn separator(language: &str) -> char {
+    match has_decimal_comma(language) {
+        true => ',',
+        false => '.',
+    }
+}
+
 /// Whether `language` separates decimals by a comma.
 fn has_decimal_comma(language: &str) -> bool {
     const POINT: [&str; 12] = [
@@ -330,7 +413,7 @@ fn has_decimal_comma(language: &str) -> bool {
 
 /// How much room a label takes in letters: marks above and below take none, full-width letters
 /// two.
-fn letters(text: &str) -> usize {
+pub fn letters(text: &str) -> usize {
     let of = |c: char| match c {
         '\u{300}'..='\u{36f}' | '\u{64b}'..='\u{65f}' | '\u{200b}'..='\u{200f}' => 0,
         '\u{2066}'..='\u{2069}' => 0,

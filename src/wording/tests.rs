@@ -424,6 +424,60 @@ fn no_text_makes_it_panic_or_hang() {
         .expect("no panic");
 }
 
+#[test]
+fn numbers_have_a_minus_sign_and_no_sign_of_nothing() {
+    assert_eq!(number("en", -1.25, 1), "−1.2");
+    assert_eq!(number("de", -1.25, 2), "−1,25");
+    assert_eq!(number("de-AT", 1000.0, 0), "1000");
+    assert_eq!(number("ar", -0.04, 1), "0.0");
+    assert_eq!(number("fr", f64::NAN, 2), "NaN");
+    let wordings = Wordings::shipped();
+    let [arabic, italian] = ["ar", "it"].map(|language| Spoken {
+        wordings: &wordings,
+        language,
+    });
+    assert_eq!(italian.short(20.0, 2), "20");
+    assert_eq!(italian.short(7.505, 2), "7,5");
+    assert_eq!(italian.short(400.0, 0), "400");
+    assert_eq!(italian.isolated("view"), "view");
+    assert_eq!(arabic.isolated("view"), "\u{2068}view\u{2069}");
+    assert_eq!(arabic.isolated(""), "");
+}
+
+#[test]
+fn keys_are_named_as_keyboards_of_the_language_name_them() {
+    let wordings = Wordings::shipped();
+    let said = |language, of| {
+        let spoken = Spoken {
+            wordings: &wordings,
+            language,
+        };
+        keys(spoken, of)
+    };
+    assert_eq!(
+        said("en", "Tab, Shift + Tab, Space"),
+        "Tab, Shift + Tab, Space"
+    );
+    assert_eq!(
+        said("de", "Tab, Shift + Tab, Space"),
+        "Tab, Umschalt + Tab, Leertaste"
+    );
+    assert_eq!(said("it", "1  2  3"), "1  2  3");
+    assert_eq!(said("fr", ",  ."), ",  .");
+    assert_eq!(said("es", "W, Ctrl + S"), "W, Ctrl + S");
+    assert_eq!(said("fr", "keys-arrows"), "flèches");
+    for (name, id) in KEY_NAMES {
+        assert_eq!(said("en", name), name, "{id}");
+    }
+}
+
+#[test]
+fn the_command_line_has_english_alone() {
+    let english = Wordings::english();
+    assert_eq!(english.languages().collect::<Vec<_>>(), ["en"]);
+    assert_eq!(english.label("en", "key-flip"), "turn the sheet over");
+}
+
 /// The literal ids that the program's own sources ask for.
 fn asked_for() -> BTreeSet<String> {
     fn collect(folder: &Path, ids: &mut BTreeSet<String>) {
@@ -432,10 +486,12 @@ fn asked_for() -> BTreeSet<String> {
             if path.is_dir() {
                 collect(&path, ids);
             } else if let Ok(text) = fs::read_to_string(&path) {
-                for asks in ["spoken.say(\"", "spoken.fill(\""] {
-                    for rest in text.split(asks).skip(1) {
-                        ids.extend(rest.split('"').next().map(str::to_owned));
-                    }
+                for asks in ["spoken.say(", "spoken.fill("] {
+                    let first = |rest: &str| {
+                        let literal = rest.trim_start().strip_prefix('"')?;
+                        literal.split('"').next().map(str::to_owned)
+                    };
+                    ids.extend(text.split(asks).skip(1).filter_map(first));
                 }
             }
         }

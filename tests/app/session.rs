@@ -37,7 +37,7 @@ pub const WAITS: Waits = Waits {
 pub struct Session {
     room: Darkroom,
     window: Entity,
-    _folder: tempfile::TempDir,
+    folder: tempfile::TempDir,
 }
 
 impl Session {
@@ -75,10 +75,19 @@ impl Session {
         let mut session = Self {
             room,
             window,
-            _folder: folder,
+            folder,
         };
         session.settle();
         session
+    }
+
+    pub fn world(&mut self) -> &mut World {
+        self.room.world()
+    }
+
+    /// Of the exhibit.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
     }
 
     pub fn frame(&mut self) {
@@ -191,7 +200,7 @@ impl Session {
 }
 
 /// Writes a picture with what lies over it, for eyes, where a test is asked to.
-fn keep(picture: &Picture, name: &str) {
+pub fn keep(picture: &Picture, name: &str) {
     if let Some(folder) = std::env::var_os("RECTO_KEEP_PICTURES") {
         let print = recto::develop::Print::develop(
             picture.width,
@@ -207,7 +216,7 @@ fn keep(picture: &Picture, name: &str) {
     }
 }
 
-const MIDDLE: Vec2 = Vec2::new(480.0, 240.0);
+pub const MIDDLE: Vec2 = Vec2::new(480.0, 240.0);
 
 /// Share of pixels over which something lies.
 fn covered(picture: &Picture) -> f64 {

@@ -10,15 +10,16 @@ use super::{
     layout::{self, Item},
     thumbs::Thumbs,
 };
+pub use crate::stage::legend::ProgramWords;
 use crate::{
     stage::{
         Shown,
         legend::{Face, TextCamera, text_size},
     },
     visitor::{
-        attract::Attract, glass::Glass, hand::Hand, measuring::Measuring, staff::StaffPanel,
+        attract::Attract, glass::Glass, hand::Hand, hints::Hints, measuring::Measuring,
+        speech::Speech, staff::StaffPanel,
     },
-    wording::Wordings,
 };
 
 /// The text's size against that of the legend.
@@ -32,12 +33,6 @@ const KNOB: f32 = 0.14;
 /// Controls lie on their ground, and both on all texts.
 const UNDER: i32 = 10;
 const OVER: i32 = 11;
-/// What the countdown and the staff's words are larger by.
-const LOUD: f32 = 1.25;
-
-/// The wordings of the program.
-#[derive(Resource, Default)]
-pub struct ProgramWords(pub Wordings);
 
 /// The languages on offer, the first of which is spoken at home; none where scenes decide.
 #[derive(Resource, Clone, Debug, Default)]
@@ -47,17 +42,32 @@ pub struct Languages {
 }
 
 impl Languages {
-    /// What is read in the language with this index; as scenes say where nobody chose.
-    pub fn spoken(&self, index: usize) -> Option<String> {
-        match (index, self.installed.is_empty()) {
-            (0, true) => None,
-            _ => self.offered.get(index).cloned(),
-        }
+    /// The tag on offer that says `chosen`: the same, or the same language as another region has it.
+    fn offer(&self, chosen: Option<&str>) -> Option<&str> {
+        let chosen = chosen?;
+        let base = |tag: &str| -> String {
+            let base = tag.split(['-', '_']).next();
+            base.unwrap_or_default().to_ascii_lowercase()
+        };
+        let same = |tag: &&String| tag.eq_ignore_ascii_case(chosen);
+        let near = |tag: &&String| base(tag) == base(chosen);
+        let mut offered = self.offered.iter();
+        let offered = offered
+            .find(same)
+            .or_else(|| self.offered.iter().find(near));
+        offered.map(String::as_str)
     }
 
-    /// The tag of the program's own wordings.
-    pub fn tag(&self, index: usize) -> &str {
-        self.offered.get(index).map_or("en", String::as_str)
+    /// What is read where `chosen` was; as scenes say where nobody chose.
+    pub fn spoken(&self, chosen: Option<&str>) -> Option<String> {
+        let offered = self.offer(chosen).map(str::to_owned);
+        offered.or_else(|| self.installed.first().cloned())
+    }
+
+    /// The tag of the program's own wordings where `chosen` was.
+    pub fn tag(&self, chosen: Option<&str>) -> &str {
+        let first = || self.offered.first().map_or("en", String::as_str);
+        self.offer(chosen).unwrap_or_else(first)
     }
 }
 
@@ -81,21 +91,13 @@ pub struct Controls {
 pub fn arrange(
     (shown, hand, measuring, interface): (Res<Shown>, Res<Hand>, Res<Measuring>, Res<Interface>),
     (attract, staff): (Res<Attract>, Res<StaffPanel>),
-    (words, reach): (Res<ProgramWords>, Res<Reach>),
-    mut languages: ResMut<Languages>,
+    (speech, languages, reach): (Speech, Res<Languages>, Res<Reach>),
+    hints: Res<Hints>,
     glass: Res<Glass>,
     mut texts: Query<&mut TextCamera>,
     mut controls: ResMut<Controls>,
 ) {
-    let offered = facts::languages(&languages.installed, &shown.exhibit);
-    if languages.offered != offered {
-        languages.offered = offered;
-    }
-    let language = languages.tag(interface.language);
-    let spoken = Words {
-        wordings: &words.0,
-        language,
-    };
+    let spoken = speech.spoken();
     let home = glass.home();
     let size = home.size();
     let room = Room {
@@ -111,6 +113,7 @@ pub fn arrange(
         let mut facts = facts::facts(&shown, &hand, &measuring, &interface, (spoken, offered));
         facts.countdown = attract.countdown().map(|left| countdown(left, spoken));
         facts.staff = staff.items(spoken);
+        facts.hint = hints.said(spoken);
         layout::lay(&room, &facts).moved(home.min)
     } else {
         Laid::default()
@@ -335,7 +338,7 @@ impl Pen<'_> {
         let mut shape = commands.spawn((Shape, UiTargetCamera(camera), GlobalZIndex(OVER), node));
         if widget.look == Look::Words {
             let size = match widget.control {
-                Control::Said => self.text * LOUD,
+                Control::Said => self.text * layout::LOUD,
                 _ => self.text,
             };
             let mut spoken = Spoken::new(Role::Label);

@@ -2,6 +2,8 @@
 
 use bevy::prelude::*;
 
+pub use crate::wording::Spoken;
+
 use super::{
     Control, Facts, Interface, Panel, Preset,
     icons::Icon,
@@ -14,8 +16,8 @@ use crate::{
         hand::Hand,
         lamp::LampPlace,
         measuring::{Kind, Measuring},
+        phrases,
     },
-    wording::{Direction, Value, Wordings, direction},
 };
 
 /// Ends of the slider of the lamp's colour: even steps in mired look even.
@@ -28,30 +30,6 @@ const OCTAVES: f64 = 2.0;
 pub const OVERHEAD_DEG: f64 = 90.0;
 pub const OBLIQUE_DEG: f64 = 45.0;
 pub const RAKING_DEG: f64 = 12.0;
-
-/// The words that are read, and in which language.
-#[derive(Clone, Copy)]
-pub struct Spoken<'w> {
-    pub wordings: &'w Wordings,
-    pub language: &'w str,
-}
-
-impl Spoken<'_> {
-    /// A wording without variables.
-    pub fn say(&self, id: &str) -> String {
-        self.wordings.label(self.language, id).to_owned()
-    }
-
-    /// A wording with variables.
-    pub fn fill(&self, id: &str, args: &[(&str, Value)]) -> String {
-        self.wordings.say(self.language, id, args)
-    }
-
-    /// Whether it is read from the right.
-    pub fn from_right(&self) -> bool {
-        direction(self.language) == Direction::RightToLeft
-    }
-}
 
 /// From a slider's place to kelvin, and back.
 pub fn kelvin(value: f64) -> f64 {
@@ -84,21 +62,6 @@ pub fn mode_id(mode: CompareMode) -> &'static str {
         CompareMode::Difference => "difference",
         CompareMode::Flicker => "flicker",
         CompareMode::Glass => "glass",
-    }
-}
-
-/// The wording of a tool.
-pub fn tool_id(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Ruler => "ruler",
-        Kind::Path => "line",
-        Kind::Area => "area",
-        Kind::Angle => "angle",
-        Kind::Profile => "profile",
-        Kind::Lines => "laid-lines",
-        Kind::Stroke => "stroke",
-        Kind::Probe => "probe",
-        Kind::Difference => "difference",
     }
 }
 
@@ -135,6 +98,7 @@ pub fn facts(
         presets: presets(hand, shown, spoken),
         sliders: sliders(hand, shown, spoken),
         list: list(shown, hand, measuring, interface, (spoken, languages)),
+        hint: None,
         countdown: None,
         staff: None,
     }
@@ -284,7 +248,8 @@ fn list(
     } else if open(Panel::Measure) {
         for kind in Kind::ALL {
             let on = measuring.kind() == Some(kind);
-            let words = spoken.say(tool_id(kind));
+            let [name, _] = phrases::tool_ids(kind);
+            let words = spoken.say(name);
             items.push(Item::button(Control::Tool(Some(kind)), None, words, on));
         }
         let button = |control, icon, id| Item::button(control, Some(icon), spoken.say(id), false);
@@ -322,7 +287,7 @@ fn list(
         if languages.len() > 1 {
             for (index, language) in languages.iter().enumerate() {
                 let words = spoken.wordings.language_name(language).to_owned();
-                let on = index == interface.language;
+                let on = language == spoken.language;
                 items.push(Item::button(Control::Language(index), None, words, on));
             }
         }

@@ -4,6 +4,7 @@
 use bevy::math::{Rect, Vec2};
 
 use super::{Control, Facts, Panel, icons::Icon};
+use crate::wording::letters;
 
 /// Least side of what is touched.
 const TARGET_MM: f32 = 15.0;
@@ -21,6 +22,10 @@ const DIAL: f32 = 4.0;
 const DIAL_LEAST: f32 = 2.2;
 /// A picture of a scene, in targets.
 const THUMB: Vec2 = Vec2::new(2.2, 1.5);
+/// Texts at the side where reading begins take up so much of a row, in heights of their letters.
+const TEXTS: f32 = 38.0;
+/// What a line of words alone is larger by.
+pub const LOUD: f32 = 1.25;
 /// A window smaller than this, in targets, has keys only.
 const LEAST: Vec2 = Vec2::new(10.0, 7.0);
 
@@ -101,7 +106,13 @@ impl Laid {
 
     /// Whether a panel covers the sheet at a place.
     pub fn covers(&self, place: Vec2) -> bool {
-        self.grounds.iter().any(|ground| ground.contains(place))
+        // What only says something is touched through.
+        let says = |ground: &Rect| {
+            let is_said = |w: &Widget| w.control == Control::Said && w.rect == *ground;
+            self.widgets.iter().any(is_said)
+        };
+        let mut grounds = self.grounds.iter();
+        grounds.any(|ground| ground.contains(place) && !says(ground))
     }
 
     /// Height of what lies at the bottom, in logical pixels, which texts keep clear of.
@@ -217,11 +228,26 @@ pub fn lay(room: &Room, facts: &Facts) -> Laid {
         top = strip(room, &mut laid, facts, top);
     }
     laid.foot_from = top;
-    let [mut lamp, mut items] = [Laid::default(), Laid::default()];
-    if facts.open.contains(&Panel::Light) {
-        light(room, &mut lamp, facts, top);
+    let sides = |top: f32| {
+        let [mut lamp, mut items] = [Laid::default(), Laid::default()];
+        if facts.open.contains(&Panel::Light) {
+            light(room, &mut lamp, facts, top);
+        }
+        list(room, &mut items, &facts.list, top);
+        [lamp, items]
+    };
+    let [mut lamp, mut items] = sides(top);
+    if let Some(words) = &facts.hint {
+        let ground = hint(room, &mut laid, words, top);
+        let meets = |other: &Rect| !ground.intersect(*other).is_empty();
+        if lamp.grounds.iter().chain(&items.grounds).any(meets) {
+            [lamp, items] = sides(ground.min.y);
+        }
+        // Texts at the foot lie beside it where there is room.
+        if ground.min.x < TEXTS * room.text {
+            laid.foot_from = ground.min.y;
+        }
     }
-    list(room, &mut items, &facts.list, top);
     // Where there is no room for both, what was opened last goes first.
     let collide = lamp.grounds.iter().any(|a| {
         let shared = |b: &Rect| !a.intersect(*b).is_empty();
@@ -309,6 +335,26 @@ fn strip(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) -> f32 {
         laid.widgets.push(arrow(x, Control::Page(1), on));
     }
     top
+}
+
+/// A line of words above `bottom`, in as many lines as it takes; returns its ground.
+fn hint(room: &Room, laid: &mut Laid, words: &str, bottom: f32) -> Rect {
+    let (free, gap) = (room.free(), room.gap());
+    let long = LOUD * letters(words) as f32 * CHARACTER * room.text + 2.0 * room.text;
+    let across = long.min(free.width());
+    let lines = (long / across).ceil().max(1.0);
+    let height = lines * LOUD * LINE * room.text + 0.8 * room.text;
+    let left = (room.size.x - across) / 2.0;
+    let ground = Rect::new(left, bottom - gap - height, left + across, bottom - gap);
+    laid.grounds.push(ground);
+    laid.widgets.push(Widget {
+        control: Control::Said,
+        rect: ground,
+        icon: None,
+        words: words.to_owned(),
+        look: Look::Words,
+    });
+    ground
 }
 
 /// The lamp in the hand, at the side where reading ends.

@@ -146,8 +146,8 @@ pub struct Interface {
     pub open: BTreeSet<Panel>,
     /// The one that was opened last.
     pub latest: Option<Panel>,
-    /// The language of everything that is read; an index into those on offer.
-    pub language: usize,
+    /// The tag of the language that was chosen for everything that is read.
+    pub language: Option<String>,
     /// Index into [`TEXT_SIZES`].
     pub text: usize,
     pub contrast: bool,
@@ -178,7 +178,7 @@ impl Interface {
             wanted,
             open: BTreeSet::new(),
             latest: None,
-            language: 0,
+            language: None,
             text: 0,
             contrast: home.contrast,
             calm: home.calm,
@@ -240,6 +240,8 @@ pub struct Facts {
     pub presets: Vec<Item>,
     pub sliders: Vec<Item>,
     pub list: Vec<Item>,
+    /// What to do, in one line.
+    pub hint: Option<String>,
     /// Instead of all else: a countdown, or what the staff sees.
     pub countdown: Option<Vec<Item>>,
     pub staff: Option<Vec<Item>>,

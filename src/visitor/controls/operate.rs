@@ -233,7 +233,7 @@ fn apply(
     match control {
         Control::Home => {
             interface.go_home();
-            hand.go_home(languages.spoken(interface.language));
+            hand.go_home(languages.spoken(None));
             hand.calm(interface.calm);
         }
         Control::Open(panel) => {
@@ -251,8 +251,10 @@ fn apply(
             };
         }
         Control::Language(language) => {
-            interface.language = language;
-            hand.speak(languages.spoken(language));
+            if let Some(tag) = languages.offered.get(language) {
+                interface.language = Some(tag.clone());
+                hand.speak(languages.spoken(Some(tag)));
+            }
         }
         Control::TextSize => interface.text = (interface.text + 1) % TEXT_SIZES.len(),
         Control::Contrast => interface.contrast = !interface.contrast,

@@ -593,6 +593,11 @@ impl Hand {
         comparing::modes(&self.exhibit, &scene, self.written().compare.as_ref())
     }
 
+    /// What everything is read in; without one, as scenes say.
+    pub fn language(&self) -> Option<&str> {
+        self.language.as_deref()
+    }
+
     /// Everything is read in `language` (BCP 47) from now on; without one, as scenes say.
     pub fn speak(&mut self, language: Option<String>) {
         self.language = language;

@@ -30,6 +30,7 @@ fn all() -> Facts {
         list: (0..11)
             .map(|k| button(Control::Language(k), "Deutsch"))
             .collect(),
+        hint: Some("Touch place after place, the last one twice".into()),
         ..Facts::default()
     }
 }
@@ -70,6 +71,9 @@ fn everything_is_large_enough_within_the_picture_and_beside_all_else() {
             .filter(|w| w.look != Look::Words)
             .collect();
         assert!(touched.len() > 20, "{room:?}");
+        let said = laid.widgets.iter().find(|w| w.control == Control::Said);
+        let said = said.expect("a hint").rect;
+        assert!(!laid.covers(said.center()), "it is touched through");
         let least = TARGET_MM * room.px_per_mm - 0.01;
         let picture = Rect::from_corners(Vec2::ZERO, room.size).inflate(0.5);
         for (k, widget) in touched.iter().enumerate() {
@@ -77,6 +81,8 @@ fn everything_is_large_enough_within_the_picture_and_beside_all_else() {
             assert!(size.min_element() >= least, "{widget:?} in {room:?}");
             let inside = picture.contains(widget.rect.min) && picture.contains(widget.rect.max);
             assert!(inside, "{widget:?} in {room:?}");
+            let under = widget.rect.intersect(said);
+            assert!(under.is_empty(), "{widget:?} under the hint in {room:?}");
             assert_eq!(laid.at(widget.rect.center()), Some(*widget));
             for other in &touched[..k] {
                 let shared = widget.rect.intersect(other.rect);
