@@ -367,7 +367,7 @@ impl Words<'_> {
     }
 }
 
-/// One line of text in the program's manner.
+/// One line of text in the program's manner; wrapped, its lines begin where reading begins.
 pub fn line(text: String, face: &Handle<Font>, size: f32) -> impl Bundle {
     (
         Text::new(text),
@@ -377,6 +377,10 @@ pub fn line(text: String, face: &Handle<Font>, size: f32) -> impl Bundle {
             ..default()
         },
         TextColor(Color::srgb(0.92, 0.91, 0.88)),
+        TextLayout {
+            justify: Justify::Start,
+            ..default()
+        },
     )
 }
 

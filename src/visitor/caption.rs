@@ -24,6 +24,10 @@ use crate::{
 const WIDTH: f32 = 36.0;
 /// The title is larger than the rest by this factor.
 const TITLE: f32 = 1.25;
+/// A row of the list of keys, in heights of its text.
+const KEY_ROW: f32 = 1.65;
+/// Over all controls: it was asked for.
+const OVER: i32 = 20;
 /// The caption's text, against that of the legend.
 const QUIET: f32 = 0.85;
 
@@ -59,6 +63,8 @@ pub struct Drawn {
     from_right: bool,
     foot: f32,
     size: f32,
+    /// Of the picture, in logical pixels.
+    height: f32,
 }
 
 /// Draws the texts that changed.
@@ -94,6 +100,7 @@ pub fn draw(
         from_right: spoken.from_right(),
         foot: text.foot,
         size,
+        height: text.height,
     };
     if *drawn == wanted {
         return;
@@ -127,40 +134,49 @@ pub fn draw(
             });
     }
     if !wanted.keys.is_empty() {
-        let side = |wanted: bool| if wanted { Val::Px(size) } else { Val::Auto };
-        let node = Node {
-            left: side(!wanted.from_right),
-            right: side(wanted.from_right),
-            top: Val::Px(size),
-            flex_direction: match wanted.from_right {
-                true => FlexDirection::RowReverse,
-                false => FlexDirection::Row,
-            },
-            column_gap: Val::Px(size * 1.5),
-            ..panel_node(size)
-        };
-        let column = || Node {
-            flex_direction: FlexDirection::Column,
-            row_gap: Val::Px(size * 0.35),
-            align_items: match wanted.from_right {
-                true => AlignItems::FlexEnd,
-                false => AlignItems::FlexStart,
-            },
-            ..default()
-        };
-        commands
-            .spawn((Panel, UiTargetCamera(camera), node, BackgroundColor(DARK)))
-            .with_children(|columns| {
-                for k in 0..2 {
-                    columns.spawn(column()).with_children(|rows| {
-                        for row in &wanted.keys {
-                            rows.spawn(line(row[k].clone(), &face.0, size));
-                        }
-                    });
-                }
-            });
+        let panel = (Panel, UiTargetCamera(camera), BackgroundColor(DARK));
+        let mut panel = commands.spawn(panel);
+        draw_keys(&mut panel, &wanted, &face.0);
     }
     *drawn = wanted;
+}
+
+/// Draws keys in one column and what they do in another, over all controls and no larger than there is room.
+fn draw_keys(panel: &mut EntityCommands, wanted: &Drawn, face: &Handle<Font>) {
+    let room = wanted.height / (wanted.keys.len() as f32 * KEY_ROW + 4.0);
+    let size = wanted.size.min(room);
+    let side = |wanted: bool| if wanted { Val::Px(size) } else { Val::Auto };
+    let node = Node {
+        left: side(!wanted.from_right),
+        right: side(wanted.from_right),
+        top: Val::Px(size),
+        flex_direction: match wanted.from_right {
+            true => FlexDirection::RowReverse,
+            false => FlexDirection::Row,
+        },
+        column_gap: Val::Px(size * 1.5),
+        ..panel_node(size)
+    };
+    let column = Node {
+        flex_direction: FlexDirection::Column,
+        row_gap: Val::Px(size * 0.35),
+        align_items: match wanted.from_right {
+            true => AlignItems::FlexEnd,
+            false => AlignItems::FlexStart,
+        },
+        ..default()
+    };
+    panel
+        .insert((node, GlobalZIndex(OVER)))
+        .with_children(|columns| {
+            for k in 0..2 {
+                columns.spawn(column.clone()).with_children(|rows| {
+                    for row in &wanted.keys {
+                        rows.spawn(line(row[k].clone(), face, size));
+                    }
+                });
+            }
+        });
 }
 
 /// Light text on this keeps a contrast above 4.5:1 over the whitest paper.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::{prelude::*, text::FontCx};
 
-use super::controls::draw::ProgramWords;
+use super::{caption::Texts, controls::draw::ProgramWords};
 use crate::{stage::say, wording::fonts::Fonts};
 
 /// Where an installation's own fonts are.
@@ -39,11 +39,20 @@ pub fn load(
     });
 }
 
-/// Says which is asked for which script, when all of them are there.
-pub fn hint(letters: Option<ResMut<Letters>>, mut context: ResMut<FontCx>) {
+/// Says which is asked for which script, when all of them are there. What was laid out before is laid out
+/// anew: it would keep the boxes of letters that nobody was asked for.
+pub fn hint(
+    letters: Option<ResMut<Letters>>,
+    (mut context, mut texts): (ResMut<FontCx>, ResMut<Texts>),
+    mut laid: Query<&mut TextFont>,
+) {
     if let Some(mut letters) = letters
         && !letters.hinted
     {
         letters.hinted = letters.fonts.hint(&mut context.context.collection);
+        if letters.hinted {
+            laid.iter_mut().for_each(|mut font| font.set_changed());
+            texts.set_changed();
+        }
     }
 }

@@ -9,8 +9,8 @@ use crate::{
     wording::{Spoken, catalogue},
 };
 
-/// Between parts of a line.
-const AND: &str = " · ";
+/// Between parts of a line, which is broken behind it.
+const AND: &str = "\u{a0}· ";
 /// Decimals of a value whose uncertainty is not known, of a place in mm, of a colour, and of a reflectance.
 const UNKNOWN: usize = 3;
 const PLACE: usize = 2;
@@ -101,7 +101,8 @@ fn values(kind: Kind, reading: &Reading, spoken: Spoken) -> Vec<String> {
         _ => reading.values.len(),
     };
     let said = reading.values.iter().take(count).map(|value| {
-        let number = measured(value, spoken);
+        // A number stays with its unit.
+        let number = measured(value, spoken).replace(' ', "\u{a0}");
         let Some(id) = catalogue::quantity(value.quantity) else {
             return spoken.isolated(&format!("{} {number}", value.quantity));
         };

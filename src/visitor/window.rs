@@ -491,6 +491,7 @@ fn follow_wishes(
                 measuring.set_changed();
             }
             Intent::Quit if hand.bypass_change_detection().close_hotspot() => texts.set_changed(),
+            Intent::Quit if texts.keys => texts.keys = false,
             Intent::Quit if !interface.open.is_empty() || interface.focus.is_some() => {
                 interface.open.clear();
                 interface.focus = None;

@@ -489,7 +489,9 @@ fn asked_for() -> BTreeSet<String> {
                 for asks in ["spoken.say(", "spoken.fill("] {
                     let first = |rest: &str| {
                         let literal = rest.trim_start().strip_prefix('"')?;
-                        literal.split('"').next().map(str::to_owned)
+                        let id = literal.split('"').next()?;
+                        let is_id = |c: char| c.is_ascii_lowercase() || c == '-';
+                        id.chars().all(is_id).then(|| id.to_owned())
                     };
                     ids.extend(text.split(asks).skip(1).filter_map(first));
                 }

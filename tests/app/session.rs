@@ -47,7 +47,8 @@ impl Session {
         Self::with(manners, folder)
     }
 
-    fn with(manners: Manners, folder: tempfile::TempDir) -> Self {
+    /// Of the exhibit in `folder`.
+    pub fn with(manners: Manners, folder: tempfile::TempDir) -> Self {
         let (exhibit, _) = Exhibit::read(folder.path()).unwrap_or_else(|faults| panic!("{faults}"));
         let [width, height] = SIZE.map(f64::from);
         let picture = HandPicture {

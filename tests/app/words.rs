@@ -5,6 +5,7 @@ use std::{fs, sync::Arc};
 use bevy::{input::touch::TouchPhase, prelude::*};
 use recto::{
     manifest::exhibit::Exhibit,
+    maps::encode::save_png_rgb8,
     stage::reload::Reread,
     visitor::{
         Intent, Kind, Manners,
@@ -21,11 +22,15 @@ const FROM_RIGHT: char = '\u{200f}';
 /// Frames after which a small map on disk is read, each of some ms, on a slow machine.
 const PATIENCE: u32 = 3_000;
 
-fn session(languages: &[&str]) -> Session {
-    Session::new(Manners {
+fn manners(languages: &[&str]) -> Manners {
+    Manners {
         languages: languages.iter().map(|tag| (*tag).to_owned()).collect(),
         ..Manners::default()
-    })
+    }
+}
+
+fn session(languages: &[&str]) -> Session {
+    Session::new(manners(languages))
 }
 
 /// Everything that is written over the picture.
@@ -41,10 +46,12 @@ fn wish(session: &mut Session, intent: Intent) {
     session.frame();
 }
 
-/// The text that has this part, once it is there.
+/// The text that has this part, once it is there; with plain spaces.
 fn text_with(session: &mut Session, part: &str) -> String {
     for _ in 0..PATIENCE {
-        let found = texts(session).into_iter().find(|text| text.contains(part));
+        let plain = |text: String| text.replace('\u{a0}', " ");
+        let mut all = texts(session).into_iter().map(plain);
+        let found = all.find(|text| text.contains(part));
         if let Some(found) = found {
             return found;
         }
@@ -120,7 +127,12 @@ fn a_reading_is_worded_anew_for_whoever_chooses_a_language() {
 
 #[test]
 fn what_cannot_be_measured_and_what_is_to_be_known_are_said_in_every_language() {
-    let mut session = session(&["it", "ja"]);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    super::write_exhibit(folder.path());
+    // Fine enough for a colour to be the mean of many places.
+    let paper = folder.path().join("paper.png");
+    save_png_rgb8(&paper, 600, 400, &[[200; 3]; 600 * 400], None).expect("written");
+    let mut session = Session::with(manners(&["it", "ja"]), folder);
     session.press(Control::Open(Panel::Measure));
     session.press(Control::Tool(Some(Kind::Profile)));
     session.tap(MIDDLE - Vec2::new(100.0, 0.0));
