@@ -147,7 +147,8 @@ fn what_cannot_be_measured_and_what_is_to_be_known_are_said_in_every_language() 
     let note = text_with(&mut session, "D65");
     assert!(note.starts_with("colori di paper.png"), "{note}");
     wish(&mut session, Intent::ReadOut);
-    text_with(&mut session, "Tocca il foglio per leggere");
+    let under = text_with(&mut session, "mm da sinistra");
+    assert!(under.ends_with("L* 80,6 · a* 0,0 · b* 0,0"), "{under}");
     speak(&mut session, 1);
     let why = text_with(&mut session, "測定できません");
     assert!(!has_english(&why), "{why}");
