@@ -333,7 +333,9 @@ fn tools_read_what_was_drawn() {
     let [difference, sigma] = value(&same, "ΔE00");
     assert!(difference == 0.0 && sigma > 0.0);
     assert!(
-        same.notes.iter().all(|note| !note.contains("assumed")),
+        same.notes
+            .iter()
+            .all(|note| !note.to_string().contains("assumed")),
         "{:?}",
         same.notes
     );
