@@ -69,8 +69,7 @@ pub fn write(
     (measuring, pointer, mut texts): (Res<Measuring>, Res<Pointer>, ResMut<Texts>),
     (shown, controls, glass): (Res<Shown>, Res<Controls>, Res<Glass>),
     (speech, interface, face): (Speech, Res<Interface>, Option<Res<Face>>),
-    cameras: Query<(Entity, &TextCamera)>,
-    boards: Query<Entity, With<Board>>,
+    (cameras, boards): (Query<(Entity, &TextCamera)>, Query<Entity, With<Board>>),
     mut images: ResMut<Assets<Image>>,
     (mut last, mut plotted): (Local<Written>, Local<Plotted>),
 ) {
