@@ -7,8 +7,6 @@ struct Pane {
     part: vec4<f32>,
     // From linear sRGB to the light of the display's channels.
     rows: mat3x4<f32>,
-    // 0 while the screens are dark.
-    level: f32,
 }
 
 @group(1) @binding(0) var<uniform> pane: Pane;
@@ -36,5 +34,5 @@ fn fragment(in: UiVertexOutput) -> @location(0) vec4<f32> {
     let uv = mix(pane.part.xy, pane.part.zw, in.uv);
     let seen = textureSample(picture, picture_sampler, uv).rgb;
     let light = seen * mat3x3<f32>(pane.rows[0].xyz, pane.rows[1].xyz, pane.rows[2].xyz);
-    return vec4(toned(light) * pane.level, 1.0);
+    return vec4(toned(light), 1.0);
 }

@@ -6,8 +6,18 @@ mod hand;
 mod hotspots;
 #[path = "app/monkey.rs"]
 mod monkey;
+#[cfg(target_os = "linux")]
+#[path = "support/screen.rs"]
+mod screen;
 #[path = "app/session.rs"]
 mod session;
+#[cfg(target_os = "linux")]
+#[path = "app/trials.rs"]
+mod trials;
+#[path = "app/visit.rs"]
+mod visit;
+#[path = "app/week.rs"]
+mod week;
 #[cfg(target_os = "linux")]
 #[path = "app/window.rs"]
 mod window;

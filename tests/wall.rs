@@ -1,7 +1,9 @@
-//! What keeps a wall running, with real processes: publishing beside a reader, and a supervisor
+//! A wall's picture on its displays, and what keeps it running, with real processes: publishing beside a reader, and a supervisor
 //! with windows that crash, hang and end.
 #![cfg(unix)]
 
+#[path = "wall/panes.rs"]
+mod panes;
 #[path = "wall/publish.rs"]
 mod publish;
 #[path = "wall/supervise.rs"]

@@ -45,6 +45,8 @@ pub struct Idle {
     pub after: Duration,
     /// How long the countdown can be refused.
     pub countdown: Duration,
+    /// Whether a sound begins it.
+    pub chime: bool,
 }
 
 impl Default for Idle {
@@ -52,6 +54,7 @@ impl Default for Idle {
         Self {
             after: Duration::from_secs(120),
             countdown: Duration::from_secs(15),
+            chime: true,
         }
     }
 }

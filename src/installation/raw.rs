@@ -151,6 +151,8 @@ record! {
             seconds: IdleSeconds,
             /// How many seconds the countdown can be refused. Without it: 15.
             countdown_seconds: CountdownSeconds,
+            /// A soft sound begins the countdown, for those who do not look. Without it: true.
+            chime: bool,
         }
         rules []
     }

@@ -453,4 +453,33 @@ mod tests {
         assert_eq!(at([30.0, 20.0, 150.0, 210.0]), 0.0);
         assert_eq!(at([0.0, 0.0, 0.0, 0.0]), 0.0);
     }
+
+    #[test]
+    fn ink_and_sheet_both_dim_what_goes_straight_through() {
+        const STRAIGHT: Pair = Pair([0.0, 0.0, 180.0, 0.0]);
+        let of = |id: &str, albedo: f64| {
+            let id = id.parse::<MediumId>().expect("a medium");
+            let specimen = Specimen::new(id.medium(), DVec3::splat(albedo));
+            let passed = specimen.at(Tier::Study, &STRAIGHT).ballistic.x;
+            // What an unscattering sheet without ink would let through.
+            let t = specimen.interface.at(1.0, specimen.surface.alpha).t;
+            let sheet = specimen.study.through.ballistic.x;
+            (passed, t * t, sheet, specimen.depth().x)
+        };
+        for (id, albedo) in [
+            ("laid", 0.8),
+            ("iron-gall-ink", 0.5),
+            ("iron-gall-ink", 0.05),
+        ] {
+            let (passed, clear, sheet, ink) = of(id, albedo);
+            // A way through is never shorter than what it leads through is deep.
+            let most = clear * (-(sheet + ink)).exp();
+            assert!(
+                passed > 0.0 && passed <= most * (1.0 + 1e-12),
+                "{id} {albedo}: {passed} {most}"
+            );
+            assert!(passed > 0.2 * most, "{id} {albedo}: {passed} {most}");
+        }
+        assert!(of("iron-gall-ink", 0.05).3 > 5.0 * of("iron-gall-ink", 0.5).3);
+    }
 }

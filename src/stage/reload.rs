@@ -46,6 +46,7 @@ pub struct ReloadPlugin {
 impl Plugin for ReloadPlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<Reread>()
+            .add_message::<Verdict>()
             .add_systems(Update, take_in.before(StageSet::Steer));
         follow(app.world_mut(), &self.exhibit);
     }
@@ -65,6 +66,10 @@ pub fn follow(world: &mut World, exhibit: &Exhibit) {
 #[derive(Message, Clone, Debug)]
 pub struct Reread(pub Arc<Exhibit>);
 
+/// Whether the files of what is shown, or is to be, are sound; their faults, in words, where not.
+#[derive(Message, Clone, Debug)]
+pub struct Verdict(pub Result<(), String>);
+
 /// What the watching thread hears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Noticed {
@@ -76,7 +81,7 @@ enum Noticed {
 /// A receiver is not Sync; only [`take_in`] takes it, and never blocks.
 #[derive(Resource)]
 struct News {
-    receiver: Mutex<Receiver<Sound>>,
+    receiver: Mutex<Receiver<Read>>,
     watcher: Sender<Noticed>,
 }
 
@@ -107,6 +112,14 @@ impl Drop for News {
     }
 }
 
+/// What the watching thread found.
+enum Read {
+    Sound(Box<Sound>),
+    /// What was sound before is so again.
+    Mended,
+    Faulty(String),
+}
+
 /// A sound exhibit, and whether any of its maps changed since the last one.
 struct Sound {
     exhibit: Exhibit,
@@ -118,12 +131,25 @@ fn take_in(
     mut library: ResMut<Library>,
     mut arranged: ResMut<Arranged>,
     mut reread: MessageWriter<Reread>,
+    mut verdicts: MessageWriter<Verdict>,
 ) {
     let receiver = match news.bypass_change_detection().receiver.get_mut() {
         Ok(receiver) => receiver,
         Err(poisoned) => poisoned.into_inner(),
     };
-    for sound in receiver.try_iter() {
+    for read in receiver.try_iter() {
+        let sound = match read {
+            Read::Sound(sound) => sound,
+            Read::Mended => {
+                verdicts.write(Verdict(Ok(())));
+                continue;
+            }
+            Read::Faulty(words) => {
+                verdicts.write(Verdict(Err(words)));
+                continue;
+            }
+        };
+        verdicts.write(Verdict(Ok(())));
         if sound.maps_changed {
             library.clear();
         }
@@ -136,7 +162,7 @@ fn take_in(
 fn watch(
     mut reader: Reader,
     (saved, saves): (Sender<Noticed>, &Receiver<Noticed>),
-    sender: &Sender<Sound>,
+    sender: &Sender<Read>,
     waker: Option<&Waker>,
 ) -> notify::Result<()> {
     let mut watcher = notify::recommended_watcher(move |event: notify::Result<Event>| {
@@ -146,8 +172,8 @@ fn watch(
         }
     })?;
     let mut watched = Vec::new();
-    rewatch(&mut watcher, &mut watched, reader.places())?;
-    let mut all_there = true;
+    // The folder may be gone by the time that this thread begins.
+    let mut all_there = rewatch(&mut watcher, &mut watched, reader.places()).is_ok();
     loop {
         // A folder that is not there says nothing when it comes back.
         let news = match all_there {
@@ -165,20 +191,26 @@ fn watch(
         // Before it is read, so that what is saved meanwhile is news. A folder that was replaced is
         // another one by the same name, and so is that of a new version.
         all_there = rewatch(&mut watcher, &mut watched, reader.places()).is_ok();
-        match reader.read() {
-            Ok(None) => {}
+        let was_faulty = reader.faulty.is_some();
+        let read = match reader.read() {
+            Ok(None) if was_faulty && reader.faulty.is_none() => Read::Mended,
+            Ok(None) => continue,
             Ok(Some((sound, warnings))) => {
                 for warning in warnings {
                     say(warning);
                 }
-                if sender.send(sound).is_err() {
-                    break;
-                }
-                if let Some(Waker(wake)) = waker {
-                    wake();
-                }
+                Read::Sound(Box::new(sound))
             }
-            Err(faults) => say(faults),
+            Err(faults) => {
+                say(&faults);
+                Read::Faulty(faults.to_string())
+            }
+        };
+        if sender.send(read).is_err() {
+            break;
+        }
+        if let Some(Waker(wake)) = waker {
+            wake();
         }
     }
     Ok(())
@@ -476,7 +508,11 @@ mod tests {
 
         fn heard(&self, within: Duration) -> Result<Sound, RecvTimeoutError> {
             let receiver = self.news.receiver.lock().expect("nobody panicked");
-            receiver.recv_timeout(within)
+            loop {
+                if let Read::Sound(sound) = receiver.recv_timeout(within)? {
+                    return Ok(*sound);
+                }
+            }
         }
 
         /// What comes out once `change` was made; made again where the watch was not yet there.

@@ -32,7 +32,7 @@ pub struct Closed(pub bool);
 
 /// When the house wants to be asked again.
 #[derive(Resource, Clone, Copy, Debug, Default)]
-pub struct Due(pub Option<Duration>);
+pub struct AskAgain(pub Option<Duration>);
 
 /// What darkens the picture.
 #[derive(Component)]
@@ -85,7 +85,7 @@ pub fn attend(
     if closed.0 {
         // In the dark nothing moves, and whoever comes next begins at home.
         if closed.is_changed() {
-            attract.touch();
+            attract.close();
             interface.go_home();
             intents.write(Intent::Home);
             hand.go_home(languages.spoken(None));
@@ -178,6 +178,11 @@ pub fn read_devices(
         compare: &taken,
     };
     for event in events.read() {
+        // From one window to another of the same wall nothing is let go.
+        if matches!(event, WindowEvent::KeyboardFocusLost(_)) && glass.panes.len() > 1 {
+            devices.let_go_of_keys();
+            continue;
+        }
         let event = &glass.event(event);
         let staff = staff.bypass_change_detection();
         devices.watch_corner(event, now, staff);

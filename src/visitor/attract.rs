@@ -49,6 +49,7 @@ pub struct Attract {
     /// Without them, the wall waits for ever.
     waits: Option<Waits>,
     doing: Doing,
+    visited: bool,
 }
 
 impl Attract {
@@ -57,6 +58,7 @@ impl Attract {
         Self {
             waits,
             doing: Doing::Waiting { idle_s: 0.0 },
+            visited: false,
         }
     }
 
@@ -70,6 +72,11 @@ impl Attract {
         matches!(self.doing, Doing::Touring { .. })
     }
 
+    /// Whether somebody has touched it since everything was as the first visitor found it.
+    pub fn is_visited(&self) -> bool {
+        self.visited
+    }
+
     /// Whole seconds left to say that one is there.
     pub fn countdown(&self) -> Option<u32> {
         match self.doing {
@@ -80,12 +87,18 @@ impl Attract {
 
     /// Somebody touches something.
     pub fn touch(&mut self) -> Touched {
+        self.visited = true;
         let was = std::mem::replace(&mut self.doing, Doing::Waiting { idle_s: 0.0 });
         match was {
             Doing::Waiting { .. } => Touched::GoesOn,
             Doing::Counting { .. } => Touched::Refused,
             Doing::Touring { .. } => Touched::Woke,
         }
+    }
+
+    /// Whoever was there is sent home: the screens go dark.
+    pub fn close(&mut self) {
+        (self.doing, self.visited) = (Doing::Waiting { idle_s: 0.0 }, false);
     }
 
     /// Lets `seconds` pass in which nothing was touched. Nobody is sent home while `busy`: something is
@@ -109,6 +122,7 @@ impl Attract {
                 if *left_s > 0.0 {
                     return Vec::new();
                 }
+                self.visited = false;
                 self.doing = Doing::Touring {
                     stop: 0,
                     seconds: 0.0,

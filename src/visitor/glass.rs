@@ -53,6 +53,13 @@ impl Glass {
         })
     }
 
+    /// The number of a finger among all windows, whose glasses may number theirs alike.
+    fn number(&self, window: Entity, id: u64) -> u64 {
+        let mut windows = self.panes.iter().map(|pane| pane.window);
+        let which = windows.position(|of| of == window).unwrap_or(0) as u64;
+        id ^ which << 48
+    }
+
     /// The part of the picture on which controls lie, on one display and under none of its frames.
     pub fn home(&self) -> Rect {
         let whole = Rect::from_corners(Vec2::ZERO, self.size);
@@ -73,6 +80,7 @@ impl Glass {
         match &mut event {
             WindowEvent::TouchInput(touch) => {
                 touch.position = self.place(touch.window, touch.position);
+                touch.id = self.number(touch.window, touch.id);
             }
             WindowEvent::CursorMoved(moved) => {
                 moved.position = self.place(moved.window, moved.position);
@@ -107,6 +115,7 @@ mod tests {
             glass.place(right, Vec2::new(10.0, 20.0)),
             Vec2::new(1030.0, 20.0)
         );
+        assert_ne!(glass.number(left, 1), glass.number(right, 1));
         // A finger that slides off goes on.
         assert_eq!(
             glass.place(left, Vec2::new(1010.0, 20.0)),

@@ -133,7 +133,7 @@ impl Devices {
             WindowEvent::CursorLeft(_) => self.pointer = None,
             WindowEvent::TouchInput(touch) => self.touch(touch, now, ground, want),
             WindowEvent::KeyboardFocusLost(_) => {
-                (self.shift, self.control, self.lamp_key) = (false, false, false);
+                self.let_go_of_keys();
                 (self.pressed, self.lamp) = (false, None);
                 for other in std::mem::take(&mut self.others) {
                     other.tell(Phase::Lost, &mut want);
@@ -144,6 +144,11 @@ impl Devices {
             }
             _ => {}
         }
+    }
+
+    /// No key is held any more.
+    pub fn let_go_of_keys(&mut self) {
+        (self.shift, self.control, self.lamp_key) = (false, false, false);
     }
 
     /// Nothing is held any more.

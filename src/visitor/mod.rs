@@ -18,6 +18,7 @@
 //! | the picture that people stand before | `glass` |
 //! | texts, and the fonts of every language | `caption`, `letters` |
 //! | while nobody is there | `attract` |
+//! | what is heard when it is about to go home | `chime` |
 //! | what only the staff gets at | `staff` |
 //! | what a resting window is woken for | `alarm` |
 //! | which tier serves what is shown | `foresight` |
@@ -30,6 +31,7 @@ mod attending;
 mod attract;
 mod board;
 mod caption;
+mod chime;
 mod comparing;
 pub mod controls;
 mod display;
@@ -64,8 +66,9 @@ use std::{
     sync::Arc,
 };
 
-pub use attending::{Closed, Due};
+pub use attending::{AskAgain, Closed};
 pub use attract::{Attract, Doing, Waits};
+pub use chime::Chime;
 pub use display::NoDisplay;
 pub use hand::{Hand, Serving};
 pub use intent::Intent;
@@ -112,6 +115,8 @@ pub struct Manners {
     pub kiosk: bool,
     /// Without them, nothing happens while nobody is there.
     pub waits: Option<Waits>,
+    /// Whether a sound begins the countdown.
+    pub chime: bool,
     /// Tags of the languages on offer, the first of which is spoken at home; without any, those of the
     /// exhibit.
     pub languages: Vec<String>,

@@ -9,7 +9,7 @@ use bevy::{
 
 use super::{
     alarm::Alarm,
-    attending::{self, Closed, Due, House},
+    attending::{self, AskAgain, Closed, House},
     attract::Attract,
     caption::Texts,
     controls::{Interface, draw::Controls, thumbs::Thumbs},
@@ -56,7 +56,7 @@ pub fn rest(
     (shown, texts, controls, hints): (Res<Shown>, Res<Texts>, Res<Controls>, Res<Hints>),
     (interface, thumbs, attract): (Res<Interface>, Res<Thumbs>, Res<Attract>),
     (staff, house, alarm): (Res<StaffPanel>, Res<House>, Option<Res<Alarm>>),
-    (closed, due): (Res<Closed>, Res<Due>),
+    (closed, due): (Res<Closed>, Res<AskAgain>),
     (arranged, library, composite): (Res<Arranged>, Res<Library>, Res<Composite>),
     time: Res<Time<Real>>,
     (mut hand, mut pace, mut settings): (ResMut<Hand>, ResMut<Pace>, ResMut<WinitSettings>),

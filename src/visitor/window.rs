@@ -29,10 +29,11 @@ use wgpu::DeviceType;
 use super::{
     Manners, NoDisplay, ShowOptions,
     alarm::Alarm,
-    attending::{self, Closed, Due, House},
+    attending::{self, AskAgain, Closed, House},
     attract::Attract,
     board,
     caption::{self, Texts},
+    chime::{self, Chime},
     comparing,
     controls::{
         Contact, Interface, Reading,
@@ -68,7 +69,7 @@ use crate::{
         camera::{camera_bundle, without_clusters},
         composite::{PictureCamera, PictureSize},
         legend::{Speaks, TextCamera},
-        reload::{ReloadPlugin, Reread},
+        reload::{ReloadPlugin, Reread, Verdict},
         say,
     },
 };
@@ -141,6 +142,9 @@ pub fn run(
     count_frames(&mut app);
     furnish(&mut app);
     if options.manners.kiosk {
+        if options.manners.chime {
+            app.insert_resource(Chime::aloud());
+        }
         hide_cursors(app.world_mut());
     }
     match app.run() {
@@ -191,8 +195,9 @@ impl Plugin for VisitorPlugin {
             .init_resource::<Reach>()
             .init_resource::<Glass>()
             .init_resource::<Closed>()
-            .init_resource::<Due>()
+            .init_resource::<AskAgain>()
             .add_message::<StaffWish>()
+            .add_message::<Verdict>()
             .init_resource::<Controls>()
             .init_resource::<Icons>()
             .init_resource::<Thumbs>()
@@ -220,7 +225,7 @@ impl Plugin for VisitorPlugin {
                     (
                         take_in_reread,
                         measure,
-                        attending::attend,
+                        (attending::attend, chime::ring).chain(),
                         attending::read_devices,
                         operate::operate,
                         attending::serve_staff,
@@ -513,9 +518,9 @@ fn fall_back(
     (mut hand, mut shown): (ResMut<Hand>, ResMut<Shown>),
     arranged: Res<Arranged>,
     mut library: ResMut<Library>,
-    mut pace: ResMut<Pace>,
+    (mut pace, house): (ResMut<Pace>, Res<House>),
     windows: Query<&mut Window, With<PrimaryWindow>>,
-    mut exit: MessageWriter<AppExit>,
+    (mut verdicts, mut exit): (MessageWriter<Verdict>, MessageWriter<AppExit>),
 ) {
     pace.stuck = false;
     if arranged.is_settled() {
@@ -526,8 +531,15 @@ fn fall_back(
         return;
     }
     // Taken out of the list, none of them is told twice.
-    for (path, error) in std::mem::take(&mut library.bypass_change_detection().faults) {
-        say(shown.exhibit.map_fault(&path, &error));
+    let faults = std::mem::take(&mut library.bypass_change_detection().faults);
+    let told = faults.iter().map(|(path, error)| {
+        let fault = shown.exhibit.map_fault(path, error);
+        say(&fault);
+        fault.to_string()
+    });
+    let told: Vec<String> = told.collect();
+    if !told.is_empty() {
+        verdicts.write(Verdict(Err(told.join("\n"))));
     }
     match hand.bypass_change_detection().retreat() {
         Retreat::Back => {
@@ -535,6 +547,8 @@ fn fall_back(
             entitle(windows, &shown.exhibit);
         }
         Retreat::Stuck => pace.stuck = true,
+        // A wall waits for another exhibit, or for a file that is saved.
+        Retreat::Nowhere if house.0.kiosk => pace.stuck = true,
         Retreat::Nowhere => drop(exit.write(AppExit::from_code(1))),
     }
 }

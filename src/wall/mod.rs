@@ -3,7 +3,8 @@
 //!
 //! | module | what it is |
 //! |---|---|
-//! | [`house`] | an installation's displays, hours, exhibits and manners, and the window that follows them |
+//! | [`house`] | an installation's displays, manners and words, and the window that has them |
+//! | [`keeper`] | follows the clock, the staff and the visitors in it |
 //! | [`panes`] | one picture over several displays |
 //! | [`publish`] | an exhibit's new version, whole or not at all |
 //! | [`heartbeat`] | what a window says of itself, for whoever looks after it |
@@ -17,6 +18,7 @@ pub mod health;
 pub mod heartbeat;
 pub mod house;
 pub mod journal;
+pub mod keeper;
 pub mod panes;
 pub mod publish;
 mod signals;

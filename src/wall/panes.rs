@@ -57,7 +57,6 @@ pub struct PaneMaterial {
 pub struct PaneUniform {
     pub part: Vec4,
     pub rows: [Vec4; 3],
-    pub level: f32,
 }
 
 impl UiMaterial for PaneMaterial {
@@ -125,7 +124,6 @@ pub fn uniform(pane: &Pane, correction: &Correction) -> PaneUniform {
     PaneUniform {
         part: Vec4::new(part[0].x, part[0].y, part[1].x, part[1].y),
         rows: [0, 1, 2].map(|k| matrix.row(k).as_vec3().extend(0.0)),
-        level: 1.0,
     }
 }
 
@@ -163,6 +161,11 @@ pub fn hang(
             Msaa::Off,
         ))
         .id();
+    hang_on(commands, camera, panes);
+}
+
+/// Panes before a camera.
+pub fn hang_on(commands: &mut Commands, camera: Entity, panes: &[(Pane, Handle<PaneMaterial>)]) {
     for (pane, material) in panes {
         let [x, y] = pane.in_window.at.map(|v| Val::Px(v as f32));
         let [width, height] = pane.in_window.size.map(|v| Val::Px(v as f32));

@@ -1,4 +1,7 @@
-//! Somebody who touches everything, everywhere, at once, and types meanwhile.
+//! Somebody who touches everything, everywhere, at once, and types meanwhile, while a curator saves sound
+//! and faulty versions of the exhibit.
+
+use std::{fs, path::Path};
 
 use bevy::{
     input::{
@@ -16,13 +19,24 @@ use recto::visitor::{
     controls::{Control, Interface},
 };
 
-use super::session::{SIZE, Session, WAITS};
+use super::visit::{SIZE, Session, WAITS, resident_mib};
 
 /// Events in the suite; as many as this says at night.
 const EVENTS: usize = 10_000;
 const EVENTS_ASKED: &str = "RECTO_MONKEY_EVENTS";
 /// Events between two frames.
 const A_FRAME: usize = 10;
+/// And between two saves.
+const A_SAVE: usize = 500;
+/// So many times it is looked at how much is held.
+const LOOKS: usize = 20;
+/// More in the second half than ever in the first one is a leak: of entities and the like, and of MiB, which
+/// the tests beside this one use as well, so that they are judged in a long run alone.
+const LEAK: f64 = 1.2;
+/// That many come and go with what is open just then.
+const SLACK: f64 = 10.0;
+const LEAK_MIB: f64 = 1.05;
+const LONG: usize = 100_000;
 const KEYS: &str = "fh123imvgsok[]x,.<>90rbznptcjlu+-";
 
 fn place(random: &mut Random) -> Vec2 {
@@ -99,6 +113,26 @@ fn event(random: &mut Random) -> Option<WindowEvent> {
     })
 }
 
+/// A version of the exhibit, sound or not.
+fn save(random: &mut Random, folder: &Path) {
+    let manifest = folder.join("exhibit.toml");
+    let write = |text: &str| fs::write(&manifest, text).expect("the manifest is written");
+    let sound = crate::MANIFEST;
+    match random.random_range(0..7) {
+        0 => write(&sound.replace("Two sheets", "Two other sheets")),
+        1 => write(&sound.replace("elevation_deg = 25", "elevation_deg = 60")),
+        // One scene less.
+        2 => write(sound.rsplit_once("[[scene]]").expect("a scene").0),
+        3 => write(&sound[..random.random_range(0..sound.len())]),
+        4 => write(&sound.replace("elevation_deg = 25", "elevation_deg = -25")),
+        5 => fs::write(folder.join("paper.png"), b"no picture").expect("a file"),
+        _ => {
+            crate::draw_paper(&folder.join("paper.png"), random.random_range(90..250));
+            write(sound);
+        }
+    }
+}
+
 #[test]
 fn whatever_is_touched_home_is_reached() {
     let asked = std::env::var(EVENTS_ASKED).ok();
@@ -111,7 +145,16 @@ fn whatever_is_touched_home_is_reached() {
         pin: recto::installation::Pin::new("4711").ok(),
         ..Manners::default()
     });
+    let folder = session.folder().to_owned();
+    let mut held = Vec::new();
     for k in 0..events {
+        if k % A_SAVE == A_SAVE - 1 {
+            save(&mut random, &folder);
+        }
+        if k % (events / LOOKS).max(1) == 0 {
+            let [entities, images, meshes] = session.holds().map(|count| count as f64);
+            held.push([entities, images, meshes, resident_mib()]);
+        }
         match event(&mut random) {
             Some(event) => session.send(event),
             None => {
@@ -144,6 +187,16 @@ fn whatever_is_touched_home_is_reached() {
             assert!(session.shown().pose.is_finite(), "{k}");
         }
     }
+    for (kind, most) in [LEAK, LEAK, LEAK, LEAK_MIB].into_iter().enumerate() {
+        let (early, late) = held.split_at(held.len() / 2);
+        let most_of = |part: &[[f64; 4]]| part.iter().map(|held| held[kind]).fold(0.0, f64::max);
+        println!("{kind}: {} and then {}", most_of(early), most_of(late));
+        if kind < 3 || events >= LONG {
+            let most = most * most_of(early) + SLACK;
+            assert!(most_of(late) <= most, "{kind}: {held:?}");
+        }
+    }
+    crate::write_exhibit(&folder);
     // All hands leave, and whoever comes next finds the way home.
     for id in 0..20 {
         session.touch(id, TouchPhase::Ended, Vec2::ZERO);

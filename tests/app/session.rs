@@ -1,222 +1,25 @@
-//! Whole visits, with touches and time that the test decides: what somebody does at the glass, what is
-//! shown then, and what it looks like.
+//! Whole visits: what somebody does at the glass, what is shown then, and what it looks like.
 
-use std::{path::Path, sync::Arc, time::Duration};
-
-use bevy::{
-    input::touch::{TouchInput, TouchPhase},
-    prelude::*,
-    time::TimeUpdateStrategy,
-    window::{PrimaryWindow, WindowEvent, WindowResolution},
+use std::sync::{
+    Arc,
+    atomic::{AtomicU32, Ordering},
 };
+
+use bevy::{input::touch::TouchPhase, prelude::*};
 use glam::DVec2;
 use recto::{
-    manifest::exhibit::{Exhibit, SideName},
-    optics::tier::Tier,
-    shot::{Darkroom, Picture},
-    stage::{Arranged, Library, Shown, Waker},
+    manifest::exhibit::SideName,
+    shot::Picture,
     visitor::{
-        Attract, Doing, Hand, Manners, VisitorPlugin, Waits,
-        controls::{Control, Interface, Look, Panel, Preset, draw::Controls},
-        hand::Picture as HandPicture,
+        Attract, Chime, Doing, Hand, Manners,
+        controls::{Control, Interface, Panel, Preset},
     },
 };
 
-/// Of the window; its display has 96 pixels an inch.
-pub const SIZE: [u32; 2] = [960, 640];
-const FRAME: Duration = Duration::from_millis(16);
+use super::visit::{Session, WAITS, keep};
+
 /// More than the promise: a picture follows a touch within so many frames.
 const LATENCY_FRAMES: u32 = 2;
-
-pub const WAITS: Waits = Waits {
-    idle_s: 60.0,
-    countdown_s: 10.0,
-};
-
-/// Somebody at the glass.
-pub struct Session {
-    room: Darkroom,
-    window: Entity,
-    folder: tempfile::TempDir,
-}
-
-impl Session {
-    pub fn new(manners: Manners) -> Self {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        super::write_exhibit(folder.path());
-        Self::with(manners, folder)
-    }
-
-    /// Of the exhibit in `folder`.
-    pub fn with(manners: Manners, folder: tempfile::TempDir) -> Self {
-        let (exhibit, _) = Exhibit::read(folder.path()).unwrap_or_else(|faults| panic!("{faults}"));
-        let [width, height] = SIZE.map(f64::from);
-        let picture = HandPicture {
-            aspect: width / height,
-            width_mm: width * 25.4 / 96.0,
-            measured: false,
-        };
-        let hand = Hand::new(Arc::new(exhibit), 0, Tier::Draft, picture, manners.calm);
-        let built = Darkroom::with(1, |app| {
-            app.add_plugins(VisitorPlugin {
-                hand,
-                display_mm: None,
-                export: None,
-                manners,
-            })
-            .insert_resource(Waker(Arc::new(|| {})))
-            .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME));
-        });
-        let mut room = built.unwrap_or_else(|error| panic!("{error}"));
-        let window = Window {
-            resolution: WindowResolution::new(SIZE[0], SIZE[1]),
-            ..default()
-        };
-        let window = room.world().spawn((window, PrimaryWindow)).id();
-        let mut session = Self {
-            room,
-            window,
-            folder,
-        };
-        session.settle();
-        session
-    }
-
-    pub fn world(&mut self) -> &mut World {
-        self.room.world()
-    }
-
-    /// Of the exhibit.
-    pub fn folder(&self) -> &Path {
-        self.folder.path()
-    }
-
-    pub fn frame(&mut self) {
-        self.room.frame().unwrap_or_else(|error| panic!("{error}"));
-    }
-
-    /// Frames until all that is wanted is there.
-    pub fn settle(&mut self) {
-        for _ in 0..6 {
-            self.frame();
-        }
-        while !self.room.world().resource::<Arranged>().is_settled() {
-            self.room.world().resource_mut::<Library>().wait();
-            self.frame();
-        }
-    }
-
-    /// Lets so much time pass.
-    pub fn wait(&mut self, seconds: f64) {
-        let mut left = seconds;
-        while left > 0.0 {
-            let step = left.min(0.25);
-            self.pass(Duration::from_secs_f64(step));
-            left -= step;
-        }
-    }
-
-    /// One frame that comes so long after the one before.
-    pub fn pass(&mut self, time: Duration) {
-        *self.room.world().resource_mut::<TimeUpdateStrategy>() =
-            TimeUpdateStrategy::ManualDuration(time);
-        self.frame();
-        *self.room.world().resource_mut::<TimeUpdateStrategy>() =
-            TimeUpdateStrategy::ManualDuration(FRAME);
-    }
-
-    pub fn send(&mut self, event: WindowEvent) {
-        self.room.world().write_message(event);
-    }
-
-    pub fn touch(&mut self, id: u64, phase: TouchPhase, at: Vec2) {
-        let touch = TouchInput {
-            phase,
-            position: at,
-            window: self.window,
-            force: None,
-            id,
-        };
-        self.send(WindowEvent::TouchInput(touch));
-    }
-
-    /// A finger goes from one place to another in some frames, and stays there.
-    pub fn drag(&mut self, id: u64, from: Vec2, to: Vec2) {
-        const STEPS: u32 = 8;
-        self.touch(id, TouchPhase::Started, from);
-        self.frame();
-        for step in 1..=STEPS {
-            let at = from.lerp(to, step as f32 / STEPS as f32);
-            self.touch(id, TouchPhase::Moved, at);
-            self.frame();
-        }
-    }
-
-    pub fn lift(&mut self, id: u64, at: Vec2) {
-        self.touch(id, TouchPhase::Ended, at);
-        self.frame();
-    }
-
-    pub fn tap(&mut self, at: Vec2) {
-        self.touch(77, TouchPhase::Started, at);
-        self.frame();
-        self.lift(77, at);
-        self.frame();
-    }
-
-    /// Where a control is.
-    pub fn find(&mut self, control: Control) -> Option<Rect> {
-        let controls = self.room.world().resource::<Controls>();
-        let mut widgets = controls.laid.widgets.iter();
-        let is_it =
-            |w: &&recto::visitor::controls::Widget| w.control == control && w.look != Look::Words;
-        widgets.find(is_it).map(|widget| widget.rect)
-    }
-
-    pub fn press(&mut self, control: Control) {
-        let rect = self.find(control);
-        let rect = rect.unwrap_or_else(|| panic!("{control:?} is not there"));
-        self.tap(rect.center());
-    }
-
-    pub fn shown(&mut self) -> Shown {
-        self.room.world().resource::<Shown>().clone()
-    }
-
-    pub fn resource<R: Resource + Clone>(&mut self) -> R {
-        self.room.world().resource::<R>().clone()
-    }
-
-    pub fn see(&mut self) -> Picture {
-        self.room
-            .see(SIZE)
-            .unwrap_or_else(|error| panic!("{error}"))
-    }
-
-    pub fn camera_moves(&mut self) -> bool {
-        let before = self.shown().scene.camera;
-        self.frame();
-        self.shown().scene.camera != before
-    }
-}
-
-/// Writes a picture with what lies over it, for eyes, where a test is asked to.
-pub fn keep(picture: &Picture, name: &str) {
-    if let Some(folder) = std::env::var_os("RECTO_KEEP_PICTURES") {
-        let print = recto::develop::Print::develop(
-            picture.width,
-            picture.height,
-            &picture.pixels,
-            &picture.legend,
-            1.0,
-        );
-        let pixels: Vec<[u8; 3]> = print.pixels.clone();
-        let path = Path::new(&folder).join(name);
-        recto::maps::encode::save_png_rgb8(&path, picture.width, picture.height, &pixels, None)
-            .expect("the picture is written");
-    }
-}
-
 pub const MIDDLE: Vec2 = Vec2::new(480.0, 240.0);
 
 /// Share of pixels over which something lies.
@@ -355,14 +158,25 @@ fn idle_counts_down_is_refused_tours_and_hands_over() {
         languages: vec!["it".into(), "ar".into()],
         ..Manners::default()
     };
-    let mut session = Session::new(manners);
+    let mut session = Session::new(Manners {
+        chime: true,
+        ..manners
+    });
+    let rung = Arc::new(AtomicU32::new(0));
+    let ring = rung.clone();
+    let chime = Chime::new(move || {
+        ring.fetch_add(1, Ordering::Relaxed);
+    });
+    session.world().insert_resource(chime);
     session.press(Control::Open(Panel::More));
     session.press(Control::Language(1));
     assert_eq!(session.shown().scene.language.as_deref(), Some("ar"));
     session.press(Control::Flip);
     session.wait(WAITS.idle_s - 2.0);
     assert!(session.find(Control::Stay).is_none());
+    assert_eq!(rung.load(Ordering::Relaxed), 0);
     session.wait(3.0);
+    assert_eq!(rung.load(Ordering::Relaxed), 1, "heard as well as seen");
     let stay = session.find(Control::Stay).expect("a countdown");
     keep(&session.see(), "countdown-ar.png");
     session.tap(stay.center());

@@ -2,15 +2,16 @@
 
 use std::{
     fs,
-    io::{BufRead, BufReader, Read},
+    io::Read,
     path::{Path, PathBuf},
-    process::{Child, Command, Stdio},
+    process::{Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
 
-/// Set to skip these tests on a machine that cannot have an X server.
-const SKIP: &str = "RECTO_SKIP_WINDOW";
+use super::screen::{self, Running, Screen};
+
+const SCREEN: [u32; 2] = [640, 480];
 /// How long anything may take on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Without a frame for so long, the window has settled.
@@ -18,46 +19,6 @@ const SETTLED: Duration = Duration::from_secs(3);
 /// The promise: so long without a single frame.
 const IDLE: Duration = Duration::from_secs(10);
 const LOOK: Duration = Duration::from_millis(100);
-
-/// A process that ends with the test.
-struct Running(Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-/// An X server and the display that it serves.
-fn x_server() -> (Running, String) {
-    let started = Command::new("Xvfb")
-        .args([
-            "-displayfd",
-            "1",
-            "-screen",
-            "0",
-            "640x480x24",
-            "-nolisten",
-            "tcp",
-        ])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn();
-    let mut server = Running(started.unwrap_or_else(|error| {
-        panic!(
-            "Xvfb does not start ({error}); install it with: sudo apt-get install xvfb\n\
-             or set {SKIP}=1 to go without the window's tests"
-        )
-    }));
-    let mut number = String::new();
-    let output = server.0.stdout.take().expect("its output");
-    BufReader::new(output)
-        .read_line(&mut number)
-        .expect("the display's number");
-    (server, format!(":{}", number.trim()))
-}
 
 /// `recto show` on an exhibit.
 struct Window {
@@ -127,15 +88,14 @@ impl Window {
 
 #[test]
 fn the_window_rests_reloads_and_outlives_a_faulty_save() {
-    if std::env::var_os(SKIP).is_some() {
-        eprintln!("skipped: {SKIP} is set");
+    if screen::is_skipped() {
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
     super::write_exhibit(folder.path());
     let logs = tempfile::tempdir().expect("a temporary folder");
-    let (_server, display) = x_server();
-    let mut window = Window::open(&display, folder.path(), logs.path().join("frames"));
+    let screen = Screen::new(SCREEN);
+    let mut window = Window::open(&screen.display, folder.path(), logs.path().join("frames"));
 
     let settled = window.settle_after(0);
     thread::sleep(IDLE);
@@ -178,8 +138,7 @@ fn damage_unseen(path: &Path) {
 
 #[test]
 fn a_damaged_map_leaves_the_last_picture_until_it_is_mended() {
-    if std::env::var_os(SKIP).is_some() {
-        eprintln!("skipped: {SKIP} is set");
+    if screen::is_skipped() {
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -197,8 +156,8 @@ fn a_damaged_map_leaves_the_last_picture_until_it_is_mended() {
     let whole = fs::read(&other).expect("a picture");
     damage_unseen(&other);
     let logs = tempfile::tempdir().expect("a temporary folder");
-    let (_server, display) = x_server();
-    let mut window = Window::open(&display, folder.path(), logs.path().join("frames"));
+    let screen = Screen::new(SCREEN);
+    let mut window = Window::open(&screen.display, folder.path(), logs.path().join("frames"));
     let settled = window.settle_after(0);
 
     // The first scene moves on to it.

@@ -14,7 +14,10 @@ use recto::{
     wording::Wordings,
 };
 
-use super::session::{MIDDLE, Session, keep};
+use super::{
+    session::MIDDLE,
+    visit::{Session, keep},
+};
 
 /// Marks that isolate what has a direction of its own, and begin a line from the right.
 const ISOLATED: [char; 2] = ['\u{2068}', '\u{2069}'];

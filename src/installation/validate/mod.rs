@@ -312,5 +312,6 @@ fn idle(raw: &RawInstallation) -> Idle {
     Idle {
         after: after.map_or(usual.after, |s| Duration::from_secs_f64(s.0)),
         countdown: countdown.map_or(usual.countdown, |s| Duration::from_secs_f64(s.0)),
+        chime: raw.and_then(|idle| idle.chime).unwrap_or(usual.chime),
     }
 }

@@ -1,0 +1,353 @@
+//! Who keeps the house: follows the clock, the staff and the visitors, changes the exhibits, and says how it
+//! is.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError},
+    time::Duration,
+};
+
+use bevy::prelude::*;
+use jiff::{Timestamp, Zoned};
+
+use super::{
+    health::{self, Health},
+    heartbeat::{self, Heart},
+    journal::{Journal, Level},
+    status::Status,
+    usage::Usage,
+};
+use crate::{
+    installation::Installation,
+    manifest::exhibit::Exhibit,
+    stage::{
+        Arranged, Shown,
+        reload::{self, Reread, Verdict},
+        say,
+    },
+    visitor::{AskAgain, Attract, Closed, ShowError, StaffWish, controls::Staff},
+};
+
+/// As long as a scene is looked at before it is counted again.
+const COUNT: f64 = 10.0;
+
+/// Where the house has the time of day from.
+#[derive(Clone)]
+pub struct Clock(Arc<dyn Fn() -> Timestamp + Send + Sync>);
+
+impl Clock {
+    /// What `ask` answers.
+    pub fn new(ask: impl Fn() -> Timestamp + Send + Sync + 'static) -> Self {
+        Self(Arc::new(ask))
+    }
+}
+
+/// That of the machine.
+impl Default for Clock {
+    fn default() -> Self {
+        Self::new(Timestamp::now)
+    }
+}
+
+/// What follows the installation.
+#[derive(Resource)]
+pub struct Keeper {
+    pub installation: Installation,
+    clock: Clock,
+    health: Arc<Health>,
+    journal: Journal,
+    /// It has a receiver, which is not Sync.
+    usage: Mutex<Usage>,
+    pub heart: Option<Arc<Heart>>,
+    _status: Option<Status>,
+    /// When the program begins anew.
+    restart: Option<Zoned>,
+    /// Whose turn it is.
+    turn: usize,
+    /// The staff asked for so many exhibits more, the last of them just now.
+    ahead: usize,
+    asked: bool,
+    /// Something was on the wall already.
+    has_shown: bool,
+    /// When it opens or closes next.
+    change: Option<Zoned>,
+    /// The staff keeps the hours away, until the next change.
+    stays: bool,
+    was_open: bool,
+    /// Whether somebody is there, is counted already, and how long they have looked at the scene.
+    was_visited: bool,
+    counted: bool,
+    looked: f64,
+}
+
+/// Follows the clock, the staff and the visitors.
+pub fn keep(
+    time: Res<Time<Real>>,
+    (shown, attract, arranged): (Res<Shown>, Res<Attract>, Res<Arranged>),
+    (mut keeper, mut closed, mut due): (ResMut<Keeper>, ResMut<Closed>, ResMut<AskAgain>),
+    (mut wishes, mut verdicts): (MessageReader<StaffWish>, MessageReader<Verdict>),
+    mut reread: MessageWriter<Reread>,
+    mut exit: MessageWriter<AppExit>,
+    mut commands: Commands,
+) {
+    let keeper = &mut *keeper;
+    let now = keeper.now();
+    let seconds = time.delta_secs_f64();
+    if seconds < 1.0 {
+        keeper.health.frame((seconds * 1e3) as f32);
+    }
+    let mut end = None;
+    for StaffWish(wish) in wishes.read() {
+        let said = format!("{wish:?}");
+        keeper
+            .journal
+            .write(Level::Info, "staff", &[("wish", said.into())]);
+        match wish {
+            Staff::Quit => end = Some(heartbeat::State::End),
+            Staff::Restart => end = Some(heartbeat::State::Restart),
+            Staff::NextExhibit => (keeper.ahead, keeper.asked) = (keeper.ahead + 1, true),
+            Staff::Hours => keeper.stays = true,
+            Staff::Back => {}
+        }
+    }
+    if keeper
+        .restart
+        .as_ref()
+        .is_some_and(|restart| *restart <= now)
+    {
+        end = Some(heartbeat::State::Restart);
+    }
+    if let Some(state) = end {
+        keeper.journal.write(Level::Info, "ends", &[]);
+        if let Some(heart) = &keeper.heart {
+            heart.leave(state);
+        }
+        exit.write(AppExit::Success);
+        return;
+    }
+    keeper.has_shown |= arranged.is_settled();
+    for Verdict(verdict) in verdicts.read() {
+        keeper.hear(verdict);
+    }
+    keeper.open(&now, &mut closed);
+    keeper.change_exhibit(
+        &now,
+        !attract.is_visited() || closed.0,
+        &mut reread,
+        &mut commands,
+    );
+    keeper.tell(&shown, &attract, closed.0, seconds);
+    let next = [keeper.change.clone(), keeper.restart.clone()];
+    let next = next.into_iter().flatten().filter_map(|then| {
+        let seconds = then.timestamp().as_second() - now.timestamp().as_second();
+        u64::try_from(seconds)
+            .ok()
+            .map(|s| Duration::from_secs(s + 1))
+    });
+    let turn = keeper.installation.exhibits.until_next(&now);
+    due.0 = next.chain(turn).min();
+}
+
+impl Keeper {
+    /// Opens the logs, the counts and the status page; what cannot be opened is told of, and gone without.
+    pub fn new(installation: Installation, clock: Clock) -> Self {
+        let health = Arc::new(Health::new());
+        let journal = match &installation.logs {
+            Some(logs) => Journal::open(&logs.folder, logs.max_bytes, logs.keep, health.clone()),
+            None => Journal::off(),
+        };
+        let usage = match installation.logs.as_ref().filter(|logs| logs.usage_counts) {
+            Some(logs) => Usage::open(&logs.folder, health.clone()),
+            None => Usage::off(),
+        };
+        let status = installation.status.and_then(|address| {
+            let served = Status::serve(address, health.clone());
+            served
+                .map_err(|error| {
+                    journal.write(Level::Error, &error, &[]);
+                    say(format_args!("recto: {error}"));
+                })
+                .ok()
+        });
+        let version = env!("CARGO_PKG_VERSION");
+        journal.write(Level::Info, "started", &[("version", version.into())]);
+        let heart = Heart::from_environment().map(Arc::new);
+        let now = (clock.0)().to_zoned(installation.hours.time_zone.clone());
+        Self {
+            // Without somebody who begins it anew, it would stay ended.
+            restart: heart
+                .as_ref()
+                .and_then(|_| installation.hours.next_restart(&now)),
+            turn: installation.exhibits.turn(&now),
+            ahead: 0,
+            asked: false,
+            has_shown: false,
+            change: installation.hours.next_change(&now),
+            stays: false,
+            was_open: true,
+            was_visited: false,
+            counted: false,
+            looked: 0.0,
+            health,
+            journal,
+            usage: Mutex::new(usage),
+            heart,
+            _status: status,
+            clock,
+            installation,
+        }
+    }
+
+    fn now(&self) -> Zoned {
+        (self.clock.0)().to_zoned(self.installation.hours.time_zone.clone())
+    }
+
+    /// The exhibit whose turn it is, or the next one that can be shown.
+    ///
+    /// # Errors
+    /// The faults of the one whose turn it is, where none can.
+    pub fn showable(&self) -> Result<PathBuf, ShowError> {
+        let folders = &self.installation.exhibits.folders;
+        let mut first = None;
+        for k in 0..folders.len() {
+            let folder = &folders[(self.turn + k) % folders.len()];
+            match Exhibit::read(folder) {
+                Ok(_) => return Ok(folder.clone()),
+                Err(faults) => {
+                    say(&faults);
+                    first = first.or(Some(faults));
+                }
+            }
+        }
+        match first {
+            Some(faults) => Err(faults.into()),
+            None => Ok(PathBuf::from(".")),
+        }
+    }
+
+    /// Dark outside the opening hours.
+    fn open(&mut self, now: &Zoned, closed: &mut ResMut<Closed>) {
+        let hours = &self.installation.hours;
+        if self.change.as_ref().is_some_and(|change| change <= now) {
+            self.change = hours.next_change(now);
+        }
+        let is_open = hours.is_open(now);
+        if is_open != self.was_open {
+            self.was_open = is_open;
+            // Whoever stays open longer does so until it would open again.
+            self.stays &= !is_open;
+            let said = if is_open { "opens" } else { "closes" };
+            self.journal.write(Level::Info, said, &[]);
+        }
+        closed.set_if_neq(Closed(!is_open && !self.stays));
+    }
+
+    /// Files were found sound or faulty.
+    fn hear(&mut self, verdict: &Result<(), String>) {
+        let faults = match verdict {
+            Ok(()) => Vec::new(),
+            Err(words) => {
+                self.journal.write(Level::Error, words, &[]);
+                // With nothing on the wall yet, the next one is better than none; each is tried once.
+                let others = self.installation.exhibits.folders.len().saturating_sub(1);
+                if !self.has_shown && self.ahead < others {
+                    (self.ahead, self.asked) = (self.ahead + 1, true);
+                }
+                vec![words.clone()]
+            }
+        };
+        self.health.update(|about| about.faults = faults);
+    }
+
+    /// The next exhibit in its turn, while nobody is there; one that cannot be shown is told of and passed
+    /// over.
+    fn change_exhibit(
+        &mut self,
+        now: &Zoned,
+        is_empty: bool,
+        reread: &mut MessageWriter<Reread>,
+        commands: &mut Commands,
+    ) {
+        let folders = &self.installation.exhibits.folders;
+        let turn = (self.installation.exhibits.turn(now) + self.ahead) % folders.len().max(1);
+        if turn == self.turn || !(is_empty || self.asked) {
+            return;
+        }
+        (self.turn, self.asked) = (turn, false);
+        for k in 0..folders.len() {
+            let folder = &folders[(turn + k) % folders.len()];
+            match Exhibit::read(folder) {
+                Ok((exhibit, _)) => {
+                    let said = folder.display().to_string();
+                    self.journal
+                        .write(Level::Info, "exhibit", &[("folder", said.into())]);
+                    let exhibit = Arc::new(exhibit);
+                    reread.write(Reread(exhibit.clone()));
+                    commands.queue(move |world: &mut World| reload::follow(world, &exhibit));
+                    return;
+                }
+                Err(faults) => {
+                    self.journal.write(Level::Error, &faults, &[]);
+                    let words = faults.to_string();
+                    self.health.update(|about| about.faults = vec![words]);
+                    say(faults);
+                }
+            }
+        }
+    }
+
+    /// How it is, and what was looked at.
+    fn tell(&mut self, shown: &Shown, attract: &Attract, closed: bool, seconds: f64) {
+        let touring = attract.is_touring();
+        let language = shown.scene.language.clone();
+        let language = language.or_else(|| shown.exhibit.languages.first().cloned());
+        let language = language.unwrap_or_default();
+        let title = shown
+            .exhibit
+            .text(&shown.exhibit.title, "")
+            .unwrap_or_default();
+        let folder = shown.exhibit.folder.display().to_string();
+        let has_shown = self.has_shown;
+        self.health.update(|about| {
+            about.state = match (closed, touring) {
+                _ if !about.faults.is_empty() => health::State::Faulty,
+                _ if !has_shown => health::State::Starting,
+                (true, _) => health::State::Closed,
+                (_, true) => health::State::Attract,
+                _ => health::State::Showing,
+            };
+            if about.exhibit != title || about.scene != shown.scene.id || about.language != language
+            {
+                title.clone_into(&mut about.exhibit);
+                about.scene.clone_from(&shown.scene.id);
+                about.language.clone_from(&language);
+                about.folder.clone_from(&folder);
+            }
+        });
+        let visited = attract.is_visited() && !closed;
+        if visited && !self.was_visited {
+            self.health.session();
+        }
+        if !visited {
+            (self.counted, self.looked) = (false, 0.0);
+        } else {
+            // The longest a picture rests between two frames of somebody who looks.
+            self.looked += seconds.min(COUNT);
+            if self.looked >= COUNT {
+                let id = Path::new(&folder).file_name().unwrap_or_default();
+                let exhibit = id.to_string_lossy();
+                let begins = !self.counted;
+                let usage = self.usage.get_mut();
+                usage.unwrap_or_else(PoisonError::into_inner).count(
+                    &exhibit,
+                    &shown.scene.id,
+                    &language,
+                    begins,
+                    self.looked,
+                );
+                (self.counted, self.looked) = (true, 0.0);
+            }
+        }
+        self.was_visited = visited;
+    }
+}
