@@ -22,6 +22,8 @@ mod compare;
 mod crops;
 #[path = "frames/enhance.rs"]
 mod enhance;
+#[path = "frames/fineness.rs"]
+mod fineness;
 #[path = "frames/glass.rs"]
 mod glass;
 #[path = "frames/lamps.rs"]

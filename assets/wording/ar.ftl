@@ -170,6 +170,7 @@ staff-wait = { $seconds ->
 staff-quit = إنهاء Recto
 staff-restart = إعادة التشغيل
 staff-next-exhibit = المعرض التالي
+staff-chart = لوحة اختبار
 staff-hours-off = إبقاء العرض مفتوحًا
 staff-status = الحالة
 

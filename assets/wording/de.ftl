@@ -162,6 +162,7 @@ staff-wait = { $seconds ->
 staff-quit = Recto beenden
 staff-restart = Neu starten
 staff-next-exhibit = Nächste Ausstellung
+staff-chart = Testbild
 staff-hours-off = Jetzt geöffnet lassen
 staff-status = Zustand
 

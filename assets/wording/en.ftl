@@ -171,6 +171,7 @@ staff-wait = { $seconds ->
 staff-quit = Quit Recto
 staff-restart = Restart
 staff-next-exhibit = Next exhibit
+staff-chart = Test chart
 staff-hours-off = Stay open now
 staff-status = Status
 

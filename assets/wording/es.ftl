@@ -164,6 +164,7 @@ staff-wait = { $seconds ->
 staff-quit = Salir de Recto
 staff-restart = Reiniciar
 staff-next-exhibit = Exposición siguiente
+staff-chart = Carta de prueba
 staff-hours-off = Seguir abierto
 staff-status = Estado
 

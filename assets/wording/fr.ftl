@@ -164,6 +164,7 @@ staff-wait = { $seconds ->
 staff-quit = Quitter Recto
 staff-restart = Redémarrer
 staff-next-exhibit = Exposition suivante
+staff-chart = Mire de contrôle
 staff-hours-off = Rester ouvert
 staff-status = État
 

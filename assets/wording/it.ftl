@@ -164,6 +164,7 @@ staff-wait = { $seconds ->
 staff-quit = Esci da Recto
 staff-restart = Riavvia
 staff-next-exhibit = Mostra successiva
+staff-chart = Scheda di prova
 staff-hours-off = Lascia aperto ora
 staff-status = Stato
 

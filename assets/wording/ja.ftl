@@ -156,6 +156,7 @@ staff-wait = { $seconds }秒お待ちください
 staff-quit = Recto を終了
 staff-restart = 再起動
 staff-next-exhibit = 次の展示
+staff-chart = テストチャート
 staff-hours-off = このまま開ける
 staff-status = 状態
 

@@ -3,6 +3,7 @@
 
 pub mod camera;
 pub mod composite;
+pub mod fineness;
 pub mod legend;
 pub mod library;
 pub mod reload;
@@ -144,7 +145,7 @@ pub struct StagePlugin {
 
 impl Plugin for StagePlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((SheetPlugin, legend::LegendPlugin))
+        app.add_plugins((SheetPlugin, legend::LegendPlugin, fineness::FinenessPlugin))
             .init_resource::<Composite>()
             .insert_resource(Library::new(self.anisotropy))
             .insert_resource(Arranged::new(self.display))

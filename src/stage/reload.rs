@@ -206,10 +206,12 @@ fn watch(
                 Read::Faulty(faults.to_string())
             }
         };
+        // What is told of a fault is heard with the next frame; a picture that stays needs none.
+        let is_sound = matches!(read, Read::Sound(_));
         if sender.send(read).is_err() {
             break;
         }
-        if let Some(Waker(wake)) = waker {
+        if let Some(Waker(wake)) = waker.filter(|_| is_sound) {
             wake();
         }
     }

@@ -3,14 +3,19 @@
 
 use std::time::Duration;
 
-use bevy::{input::touch::TouchPhase, prelude::*, window::WindowEvent};
+use bevy::{
+    input::{ButtonState, touch::TouchPhase},
+    prelude::*,
+    window::WindowEvent,
+};
 use glam::DVec2;
 
 use super::{
     Manners,
     attract::{self, Attract, Touched},
+    chart::Chart,
     controls::{
-        Contact, Interface,
+        Contact, Interface, Staff,
         draw::{Controls, Languages},
         operate::Asked,
     },
@@ -135,16 +140,17 @@ pub fn stop_seconds(hand: &Hand) -> Vec<f64> {
 pub fn serve_staff(
     mut asked: MessageReader<Asked>,
     mut staff: ResMut<StaffPanel>,
+    mut chart: ResMut<Chart>,
     mut wishes: MessageWriter<StaffWish>,
 ) {
     for asked in asked.read() {
         match asked {
             Asked::Digit(digit) => staff.digit(*digit),
-            Asked::Staff(wish) => {
-                if let Some(wish) = staff.ask(*wish) {
-                    wishes.write(StaffWish(wish));
-                }
-            }
+            Asked::Staff(wish) => match staff.ask(*wish) {
+                Some(Staff::Chart) => chart.0 = true,
+                Some(wish) => drop(wishes.write(StaffWish(wish))),
+                None => {}
+            },
             // The touch itself has said so.
             Asked::Stay => {}
         }
@@ -156,7 +162,7 @@ pub fn read_devices(
     mut devices: ResMut<Devices>,
     time: Res<Time<Real>>,
     (controls, shown): (Res<Controls>, Res<Shown>),
-    (house, mut glass, closed): (Res<House>, ResMut<Glass>, Res<Closed>),
+    (house, mut glass, closed, mut chart): (Res<House>, ResMut<Glass>, Res<Closed>, ResMut<Chart>),
     (mut attract, mut staff, mut hand): (ResMut<Attract>, ResMut<StaffPanel>, ResMut<Hand>),
     (mut intents, mut contacts): (MessageWriter<Intent>, MessageWriter<Contact>),
 ) {
@@ -184,6 +190,14 @@ pub fn read_devices(
             continue;
         }
         let event = &glass.event(event);
+        if chart.0 {
+            // The touch itself is about that alone.
+            let ends = is_touch(event) && !is_lifted(event);
+            if ends {
+                chart.0 = false;
+            }
+            continue;
+        }
         let staff = staff.bypass_change_detection();
         devices.watch_corner(event, now, staff);
         if closed.0 && !staff.is_open() {
@@ -205,6 +219,16 @@ pub fn read_devices(
             Wish::Intent(intent) => drop(intents.write(intent)),
             Wish::Contact(contact) => drop(contacts.write(contact)),
         });
+    }
+}
+
+/// Whether it is the end of what was begun before.
+fn is_lifted(event: &WindowEvent) -> bool {
+    match event {
+        WindowEvent::TouchInput(touch) => touch.phase != TouchPhase::Started,
+        WindowEvent::MouseButtonInput(button) => button.state == ButtonState::Released,
+        WindowEvent::KeyboardInput(key) => key.state == ButtonState::Released,
+        _ => false,
     }
 }
 

@@ -69,9 +69,9 @@ pub fn write(
     (measuring, pointer, mut texts): (Res<Measuring>, Res<Pointer>, ResMut<Texts>),
     (shown, controls, glass): (Res<Shown>, Res<Controls>, Res<Glass>),
     (speech, interface, face): (Speech, Res<Interface>, Option<Res<Face>>),
-    (cameras, boards): (Query<(Entity, &TextCamera)>, Query<Entity, With<Board>>),
-    mut images: ResMut<Assets<Image>>,
-    (mut last, mut plotted): (Local<Written>, Local<Plotted>),
+    cameras: Query<(Entity, &TextCamera)>,
+    boards: Query<Entity, With<Board>>,
+    (mut images, mut last, mut plotted): (ResMut<Assets<Image>>, Local<Written>, Local<Plotted>),
 ) {
     let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
         return;

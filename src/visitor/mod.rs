@@ -18,10 +18,13 @@
 //! | the picture that people stand before | `glass` |
 //! | texts, and the fonts of every language | `caption`, `letters` |
 //! | while nobody is there | `attract` |
+//! | what displays are measured by | [`chart`] |
 //! | what is heard when it is about to go home | `chime` |
 //! | what only the staff gets at | `staff` |
 //! | what a resting window is woken for | `alarm` |
 //! | which tier serves what is shown | `foresight` |
+//! | a display without a window manager | `filling` |
+//! | how many pixels of it are drawn meanwhile | `fineness` |
 //! | who is there, and what happens while nobody is | `attending` |
 //! | the window | `window` |
 //! | when it draws, and its rest | `pace` |
@@ -31,11 +34,14 @@ mod attending;
 mod attract;
 mod board;
 mod caption;
+pub mod chart;
 mod chime;
 mod comparing;
 pub mod controls;
 mod display;
 mod export;
+mod filling;
+mod fineness;
 mod foresight;
 pub mod glass;
 pub mod hand;

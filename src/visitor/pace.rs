@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use bevy::{
+    ecs::system::SystemParam,
     prelude::*,
     winit::{UpdateMode, WinitSettings},
 };
@@ -12,13 +13,20 @@ use super::{
     attending::{self, AskAgain, Closed, House},
     attract::Attract,
     caption::Texts,
+    chart::Chart,
     controls::{Interface, draw::Controls, thumbs::Thumbs},
+    filling::Filling,
+    fineness,
     foresight::Observed,
     hand::Hand,
     hints::Hints,
     staff::StaffPanel,
 };
-use crate::stage::{Arranged, Library, Shown, composite::Composite};
+use crate::stage::{
+    Arranged, Library, Shown,
+    composite::{Composite, is_composite},
+    fineness::Fineness,
+};
 
 /// Frames drawn after the stage has settled, until maps and pipelines have reached the screen.
 const SETTLING_FRAMES: u32 = 4;
@@ -47,19 +55,55 @@ pub struct Pace {
     pub moved: Duration,
     /// Something has been shown.
     pub begun: bool,
+    /// What was learnt of how fine the picture may be in motion.
+    pub fineness: fineness::Fineness,
     /// What is wanted cannot be shown until a file is saved: there is nothing to wait for.
     pub stuck: bool,
 }
 
+/// Everybody who is to be asked again at some time, and what wakes the window for them.
+#[derive(SystemParam)]
+pub struct Dues<'w> {
+    attract: Res<'w, Attract>,
+    staff: Res<'w, StaffPanel>,
+    hints: Res<'w, Hints>,
+    house: Res<'w, House>,
+    asked: Res<'w, AskAgain>,
+    filling: Option<Res<'w, Filling>>,
+    alarm: Option<Res<'w, Alarm>>,
+}
+
+impl Dues<'_> {
+    /// Sets the alarm to whatever is due first.
+    fn set(&self, now: Duration, hand: &Hand) {
+        let Some(alarm) = &self.alarm else {
+            return;
+        };
+        let kiosk = self.house.0.kiosk;
+        let due = [
+            self.attract
+                .next_s(&attending::stop_seconds(hand))
+                .map(Duration::from_secs_f64),
+            self.staff.next(),
+            self.hints.next(),
+            self.house.0.scan_s.map(Duration::from_secs_f64),
+            kiosk.then_some(HEARTBEAT),
+            self.asked.0,
+            self.filling.as_ref().and_then(|filling| filling.next(now)),
+        ];
+        alarm.set(due.into_iter().flatten().min());
+    }
+}
+
 /// Draws on while something moves or is on its way, and then not at all.
 pub fn rest(
-    (shown, texts, controls, hints): (Res<Shown>, Res<Texts>, Res<Controls>, Res<Hints>),
-    (interface, thumbs, attract): (Res<Interface>, Res<Thumbs>, Res<Attract>),
-    (staff, house, alarm): (Res<StaffPanel>, Res<House>, Option<Res<Alarm>>),
-    (closed, due): (Res<Closed>, Res<AskAgain>),
+    (shown, texts, controls): (Res<Shown>, Res<Texts>, Res<Controls>),
+    (interface, thumbs): (Res<Interface>, Res<Thumbs>),
+    (time, closed, chart): (Res<Time<Real>>, Res<Closed>, Res<Chart>),
+    dues: Dues,
     (arranged, library, composite): (Res<Arranged>, Res<Library>, Res<Composite>),
-    time: Res<Time<Real>>,
-    (mut hand, mut pace, mut settings): (ResMut<Hand>, ResMut<Pace>, ResMut<WinitSettings>),
+    (mut hand, mut pace): (ResMut<Hand>, ResMut<Pace>),
+    (mut settings, mut fineness): (ResMut<WinitSettings>, ResMut<Fineness>),
 ) {
     let settled = arranged.is_settled();
     // Only a frame that follows another at once tells how long they take.
@@ -71,6 +115,10 @@ pub fn rest(
             ms,
         });
     }
+    if settled && pace.left > 0 && hand.is_hurried() {
+        let most_ms = SLOW * shown.exhibit.accuracy.frame_ms;
+        pace.fineness.frame(time.delta_secs_f64() * 1e3, most_ms);
+    }
     pace.begun |= settled;
     pace.left = pace.left.saturating_sub(1);
     if (!settled && !pace.stuck) || arranged.is_fresh() || composite.is_fresh() {
@@ -79,9 +127,10 @@ pub fn rest(
         || texts.is_changed()
         || controls.is_changed()
         || interface.is_changed()
-        || hints.is_changed()
+        || dues.hints.is_changed()
         || thumbs.is_changed()
         || closed.is_changed()
+        || chart.is_changed()
         || hand.is_moving()
     {
         pace.left = pace.left.max(CHANGE_FRAMES);
@@ -89,9 +138,18 @@ pub fn rest(
         // At rest, the picture refines; a hand that only pauses does not wait for that.
         if time.elapsed().saturating_sub(pace.moved) > PAUSE {
             hand.hurry(false);
+            pace.fineness.rest();
         }
         pace.left = CHANGE_FRAMES;
     } else if hand.takes_turns() {
+        pace.left = pace.left.max(CHANGE_FRAMES);
+    }
+    // What is put together pixel by pixel is drawn with all of them.
+    let share = match hand.is_hurried() && !is_composite(&shown.scene) {
+        true => pace.fineness.share(),
+        false => 1.0,
+    };
+    if fineness.set_if_neq(Fineness(share)) {
         pace.left = pace.left.max(CHANGE_FRAMES);
     }
     let loading = !settled && library.is_busy();
@@ -111,17 +169,5 @@ pub fn rest(
         settings.focused_mode = mode;
         settings.unfocused_mode = mode;
     }
-    if let Some(alarm) = alarm {
-        let due = [
-            attract
-                .next_s(&attending::stop_seconds(&hand))
-                .map(Duration::from_secs_f64),
-            staff.next(),
-            hints.next(),
-            house.0.scan_s.map(Duration::from_secs_f64),
-            house.0.kiosk.then_some(HEARTBEAT),
-            due.0,
-        ];
-        alarm.set(due.into_iter().flatten().min());
-    }
+    dues.set(time.elapsed(), &hand);
 }

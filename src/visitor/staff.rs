@@ -193,6 +193,7 @@ impl StaffPanel {
                 words(spoken.say("staff-status")),
                 button(Staff::NextExhibit, None, "staff-next-exhibit"),
                 button(Staff::Hours, None, "staff-hours-off"),
+                button(Staff::Chart, None, "staff-chart"),
                 button(Staff::Restart, None, "staff-restart"),
                 button(Staff::Quit, None, "staff-quit"),
                 back,

@@ -33,6 +33,7 @@ use super::{
     attract::Attract,
     board,
     caption::{self, Texts},
+    chart::{self, Chart},
     chime::{self, Chime},
     comparing,
     controls::{
@@ -43,6 +44,7 @@ use super::{
         thumbs::{self, Thumbs},
     },
     export::{self, Exports},
+    filling::{self, Filling},
     foresight::{Foresight, foresee},
     glass::Glass,
     hand::{Hand, Picture, Retreat},
@@ -137,6 +139,8 @@ pub fn run(
                 manners,
             },
         ))
+        .init_resource::<Filling>()
+        .add_systems(Update, filling::fill)
         .add_observer(outlive_display)
         .add_systems(Startup, (without_clusters, suit_device, set_up));
     count_frames(&mut app);
@@ -195,6 +199,7 @@ impl Plugin for VisitorPlugin {
             .init_resource::<Reach>()
             .init_resource::<Glass>()
             .init_resource::<Closed>()
+            .init_resource::<Chart>()
             .init_resource::<AskAgain>()
             .add_message::<StaffWish>()
             .add_message::<Verdict>()
@@ -247,7 +252,7 @@ impl Plugin for VisitorPlugin {
                         draw::arrange,
                         board::write,
                         caption::draw,
-                        (thumbs::gather, draw::draw, attending::darken).chain(),
+                        (thumbs::gather, draw::draw, attending::darken, chart::draw).chain(),
                         pace::rest,
                     )
                         .chain()

@@ -107,7 +107,8 @@ pub fn keep(
             Staff::Restart => end = Some(heartbeat::State::Restart),
             Staff::NextExhibit => (keeper.ahead, keeper.asked) = (keeper.ahead + 1, true),
             Staff::Hours => keeper.stays = true,
-            Staff::Back => {}
+            // Between the staff and the displays.
+            Staff::Chart | Staff::Back => {}
         }
     }
     if keeper

@@ -122,8 +122,8 @@ size_mm = [240, 200]
 left_mm = 250
 desktop_px = [480, 0]
 [idle]
-seconds = 5
-countdown_seconds = 3
+seconds = 14
+countdown_seconds = 4
 chime = false
 [interface]
 reduced_motion = false
@@ -159,6 +159,13 @@ fn until(screen: &Screen, what: &str, is_so: impl Fn(&Screen) -> bool) {
     println!("{what}: {:.1} s", start.elapsed().as_secs_f64());
 }
 
+/// Whether nothing on it moves.
+fn is_still(screen: &Screen) -> bool {
+    let (_, _, seen) = screen.see();
+    pause(0.4);
+    screen.differs(&seen) == 0.0
+}
+
 #[test]
 fn a_wall_is_visited_and_comes_back_from_whatever_happens() {
     if screen::is_skipped() {
@@ -186,17 +193,21 @@ fn a_wall_is_visited_and_comes_back_from_whatever_happens() {
         until(&screen, "turned", |screen| {
             screen.differs(&before) > CHANGED
         });
-        until(&screen, "back", |screen| screen.differs(&before) < CHANGED);
+        // It comes back, and the controls come to the display that was touched.
+        until(&screen, "at rest", is_still);
     }
-    // They look for a while, say that they are still there, and leave.
+    // They look until the hint has gone, say that they are still there, and leave.
+    pause(9.0);
     let (_, _, before) = screen.see();
     until(&screen, "counts down", |screen| {
         screen.differs(&before) > CHANGED
     });
-    screen.click(LEFT);
+    let (_, _, counting) = screen.see();
+    screen.click(RIGHT);
     until(&screen, "refused", |screen| {
-        screen.differs(&before) < CHANGED
+        screen.differs(&counting) > CHANGED
     });
+    pause(6.0);
     let status = wall.status().expect("a status");
     assert_eq!(status["state"], "showing", "{status}");
     assert_eq!(status["sessions_today"], 1, "{status}");

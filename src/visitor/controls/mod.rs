@@ -75,6 +75,8 @@ pub enum Staff {
     Quit,
     Restart,
     NextExhibit,
+    /// What each display should show, to be measured.
+    Chart,
     /// Stays open, or closes, whatever the hour.
     Hours,
     Back,
