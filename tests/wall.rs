@@ -1,5 +1,5 @@
-//! A wall's picture on its displays, and what keeps it running, with real processes: publishing beside a reader, and a supervisor
-//! with windows that crash, hang and end.
+//! A wall's picture on its displays, several machines that carry it, and what keeps it running, with real
+//! processes: publishing beside a reader, and a supervisor with windows that crash, hang and end.
 #![cfg(unix)]
 
 #[path = "wall/panes.rs"]
@@ -8,6 +8,8 @@ mod panes;
 mod publish;
 #[path = "wall/supervise.rs"]
 mod supervise;
+#[path = "wall/together.rs"]
+mod together;
 
 use std::process::{Command, Output};
 

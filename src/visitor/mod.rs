@@ -18,6 +18,7 @@
 //! | the picture that people stand before | `glass` |
 //! | texts, and the fonts of every language | `caption`, `letters` |
 //! | while nobody is there | `attract` |
+//! | what another machine of the wall is told, and shows | [`mirror`] |
 //! | what is heard when it is about to go home | `chime` |
 //! | what only the staff gets at | `staff` |
 //! | what a resting window is woken for | `alarm` |
@@ -47,6 +48,7 @@ mod lamp;
 pub mod letters;
 mod marks;
 mod measuring;
+pub mod mirror;
 mod motion;
 mod notice;
 mod pace;
