@@ -310,7 +310,7 @@ fn machines_carry_their_displays_and_know_who_leads() {
     let nobody = named(None, Some("kiosk-7")).unwrap_err().to_string();
     assert!(nobody.contains("RECTO_MACHINE=NAME"), "{nobody}");
     let alone = sound(SMALL);
-    assert_eq!(alone.machine(None, Some("west")), Ok(None));
+    assert_eq!(alone.machine(None, Some("west")).unwrap(), None);
     assert!(
         alone
             .machine(Some("west"), None)

@@ -5,7 +5,6 @@ use std::{env, fs, path::PathBuf};
 use super::{Failure, options};
 use crate::{
     installation::{Installation, Use, machines::MACHINE},
-    manifest::Faults,
     optics::tier::Tier,
     stage::say,
     visitor::{self, Manners, ShowError, ShowOptions, Waits},
@@ -90,9 +89,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
                 .filter(|_| installation.machines.is_some())
         };
         let machine = arguments.machine.or_else(named);
-        let machine = installation
-            .machine(machine.as_deref(), host().as_deref())
-            .map_err(Faults::from)?;
+        let machine = installation.machine(machine.as_deref(), host().as_deref())?;
         return ended(house::show(installation, machine, &options)?);
     }
     let path = arguments.exhibit.or_else(sample_exhibit).ok_or_else(|| {

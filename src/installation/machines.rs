@@ -3,7 +3,7 @@
 use std::{net::SocketAddr, time::Duration};
 
 use super::Installation;
-use crate::manifest::{Fault, Severity, did_you_mean, quote, quoted_list};
+use crate::manifest::{Fault, Faults, Severity, did_you_mean, quote, quoted_list};
 
 /// Where a machine learns its name, if the command line does not say it.
 pub const MACHINE: &str = "RECTO_MACHINE";
@@ -77,16 +77,19 @@ impl Installation {
         &self,
         asked: Option<&str>,
         host: Option<&str>,
-    ) -> Result<Option<Machine>, Fault> {
-        let fault = |found: String, allowed: String, remedy: String| Fault {
-            severity: Severity::Error,
-            file: None,
-            place: None,
-            path: ASKED.into(),
-            found,
-            allowed,
-            remedy,
-            unreadable: false,
+    ) -> Result<Option<Machine>, Faults> {
+        let fault = |found: String, allowed: String, remedy: String| -> Faults {
+            let fault = Fault {
+                severity: Severity::Error,
+                file: None,
+                place: None,
+                path: ASKED.into(),
+                found,
+                allowed,
+                remedy,
+                unreadable: false,
+            };
+            fault.into()
         };
         let Some(machines) = &self.machines else {
             return match asked {

@@ -121,6 +121,14 @@ impl Ear {
         }
     }
 
+    /// How long it is until somebody who is not heard is lost.
+    fn patience(&self, line: &Line) -> Duration {
+        match self.is_lost {
+            true => line.lost_after,
+            false => line.lost_after.saturating_sub(self.since.elapsed()),
+        }
+    }
+
     /// Looks whether `name` is heard, and says what changed.
     fn listen(&mut self, line: &Line, name: &str, heard: Option<Instant>) {
         let silent = heard.unwrap_or(self.since).elapsed();
@@ -674,6 +682,7 @@ fn follow<T: DeserializeOwned + Send + 'static>(shared: &Arc<Shared<Post<T>>>, w
                 break;
             }
             let mut until = next_ask.saturating_duration_since(Instant::now());
+            until = until.min(ear.patience(line));
             let mut rings = false;
             if let Some(at) = post.inbox.next() {
                 let now = shared.watch.now();

@@ -2,7 +2,7 @@
 //!
 //! | step | where |
 //! |---|---|
-//! | what is shown, whole, with a version and a time | [`snapshot`], [`mirror::Told`] |
+//! | what is shown, whole, with a version and a time | [`snapshot`], [`Told`] |
 //! | whose time that is | [`clock`] |
 //! | from machine to machine | [`link`] |
 //! | a window that leads, or is led | here |
