@@ -60,6 +60,10 @@ const FRAME: Duration = Duration::from_millis(16);
 const PATIENCE: Duration = Duration::from_secs(120);
 /// One program on one device draws the same twice.
 const SAME: f32 = 0.0;
+/// Letters lie in an atlas in the order in which they were first drawn, and are read there to a step of 8
+/// bits, in linear light; few of them are read so exactly between two steps.
+const STEP: f32 = 0.009;
+const FEW: usize = 50;
 /// What is seen to be another picture.
 const OTHER: f32 = 0.02;
 
@@ -316,17 +320,29 @@ impl Machine {
     }
 }
 
-/// Largest difference of any pixel, and of what lies over it.
-fn difference(a: &Picture, b: &Picture) -> f32 {
-    let largest = |a: &[f32], b: &[f32]| {
+/// Largest difference of any value of the sheet, and of what lies over it, of which so many differ.
+fn difference(a: &Picture, b: &Picture) -> ([f32; 2], usize) {
+    let apart = |a: &[f32], b: &[f32]| -> Vec<f32> {
         assert_eq!(a.len(), b.len());
-        a.iter()
-            .zip(b)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f32::max)
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect()
     };
-    let pixels = largest(a.pixels.as_flattened(), b.pixels.as_flattened());
-    pixels.max(largest(a.legend.as_flattened(), b.legend.as_flattened()))
+    let sheet = apart(a.pixels.as_flattened(), b.pixels.as_flattened());
+    let over = apart(a.legend.as_flattened(), b.legend.as_flattened());
+    let largest = |all: &[f32]| all.iter().copied().fold(0.0, f32::max);
+    let count = over.iter().filter(|apart| **apart > 0.0).count();
+    ([largest(&sheet), largest(&over)], count)
+}
+
+#[track_caller]
+fn alike(a: &Picture, b: &Picture) {
+    let ([sheet, over], count) = difference(a, b);
+    let words = format!("sheet {sheet}, over it {over} of {count} values");
+    assert!(sheet <= SAME && over <= STEP && count <= FEW, "{words}");
+}
+
+#[track_caller]
+fn same(a: &mut Machine, b: &mut Machine) {
+    alike(&a.see(), &b.see());
 }
 
 /// Writes pictures for eyes, where somebody asks for them.
@@ -355,7 +371,7 @@ fn a_follower_shows_what_the_leader_s_hand_turns() {
     let mut follower = Machine::new(&place, "east");
     follows(&mut leader, &mut follower, "first picture");
     let rest = leader.see();
-    assert_eq!(difference(&rest, &follower.see()), SAME);
+    alike(&rest, &follower.see());
 
     // A sheet that is held turned, under another lamp, with a panel open.
     leader
@@ -369,12 +385,15 @@ fn a_follower_shows_what_the_leader_s_hand_turns() {
     });
     leader.drag(Vec2::new(300.0, 150.0), Vec2::new(390.0, 180.0));
     let turned = leader.see();
-    assert!(difference(&turned, &rest) > OTHER, "it is another picture");
+    assert!(
+        difference(&turned, &rest).0[0] > OTHER,
+        "it is another picture"
+    );
     follows(&mut leader, &mut follower, "a turn of the hand");
     let followed = follower.see();
     keep(&turned, "together-leader.png");
     keep(&followed, "together-follower.png");
-    assert_eq!(difference(&turned, &followed), SAME);
+    alike(&turned, &followed);
     assert_eq!(follower.shown().pose, leader.shown().pose);
 
     // The other side, near, with an overlay and another language, without the caption.
@@ -382,12 +401,7 @@ fn a_follower_shows_what_the_leader_s_hand_turns() {
     for intent in [Intent::GoTo(1), Intent::StepOverlay, Intent::Caption] {
         leader.wish(intent);
     }
-    leader.room.world().resource_mut::<Interface>().language = 1;
-    leader
-        .room
-        .world()
-        .resource_mut::<Hand>()
-        .speak(Some("it".to_owned()));
+    leader.room.world().resource_mut::<Interface>().language = Some("it".to_owned());
     leader.frame();
     leader.settle();
     follows(
@@ -396,7 +410,7 @@ fn a_follower_shows_what_the_leader_s_hand_turns() {
         "a scene, an overlay, a language",
     );
     assert_eq!(follower.shown().scene, leader.shown().scene);
-    assert_eq!(difference(&leader.see(), &follower.see()), SAME);
+    same(&mut leader, &mut follower);
 
     // Members of a comparison, and a tool that lies on the sheet.
     leader.wish(Intent::StepOverlay);
@@ -404,7 +418,7 @@ fn a_follower_shows_what_the_leader_s_hand_turns() {
     leader.settle();
     follows(&mut leader, &mut follower, "a comparison");
     assert!(follower.shown().scene.compare.is_some());
-    assert_eq!(difference(&leader.see(), &follower.see()), SAME);
+    same(&mut leader, &mut follower);
 
     // Whoever touches a follower touches nothing.
     let before = follower.told();
@@ -464,7 +478,7 @@ fn a_follower_that_stood_still_catches_up_at_once() {
     );
     let heard = follower.standing().leader.unwrap();
     assert!(heard.shown_version.unwrap() >= shown.unwrap() + 200);
-    assert_eq!(difference(&leader.see(), &follower.see()), SAME);
+    same(&mut leader, &mut follower);
 }
 
 #[test]
@@ -483,18 +497,14 @@ fn a_leader_that_is_lost_leaves_its_picture_and_is_followed_when_it_is_back() {
             .iter()
             .any(|fault| fault.contains("west has been silent for"))
     });
-    assert_eq!(
-        difference(&last, &follower.see()),
-        SAME,
-        "the last picture stays"
-    );
+    alike(&last, &follower.see());
     let mut leader = Machine::new(&place, "west");
     leader.wish(Intent::RaiseLamp(80.0));
     follows(&mut leader, &mut follower, "the leader is back");
     follower.until("nothing is wrong any more", |follower| {
         follower.faults().is_empty()
     });
-    assert_eq!(difference(&leader.see(), &follower.see()), SAME);
+    same(&mut leader, &mut follower);
     let log = place.log("east");
     assert_eq!(log.matches("west has been silent").count(), 1, "{log}");
     assert_eq!(log.matches("west is heard again").count(), 1, "{log}");
@@ -526,7 +536,7 @@ fn without_the_leader_s_exhibit_the_last_picture_stays() {
             .iter()
             .any(|fault| fault.contains("is another version here"))
     });
-    assert_eq!(difference(&before, &follower.see()), SAME);
+    alike(&before, &follower.see());
     leader.until("the leader hears of it", |leader| {
         leader
             .faults()
