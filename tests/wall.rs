@@ -4,8 +4,13 @@
 
 #[path = "wall/panes.rs"]
 mod panes;
+#[path = "wall/processes.rs"]
+mod processes;
 #[path = "wall/publish.rs"]
 mod publish;
+#[path = "support/screen.rs"]
+#[allow(dead_code, reason = "other tests click, and look at the light")]
+mod screen;
 #[path = "wall/supervise.rs"]
 mod supervise;
 #[path = "wall/together.rs"]

@@ -1,11 +1,10 @@
-//! Several machines of one wall: apps without windows and processes with them, over loopback.
+//! Several machines of one wall: apps without windows, over loopback.
 
 use std::{
     fs,
-    io::{BufRead, BufReader, Read, Write},
+    io::Write,
     net::{TcpListener, TcpStream},
     path::{Path, PathBuf},
-    process::{Child, Stdio},
     sync::{
         Arc,
         atomic::{AtomicU16, Ordering},
@@ -19,10 +18,6 @@ use bevy::{
     prelude::*,
     time::TimeUpdateStrategy,
     window::{PrimaryWindow, WindowEvent, WindowResolution},
-};
-use nix::{
-    sys::signal::{Signal, kill},
-    unistd::Pid,
 };
 use recto::{
     installation::Installation,
@@ -51,13 +46,11 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use zenoh::Wait;
 
-use super::recto;
-
 /// Of the whole wall's picture.
 const SIZE: [u32; 2] = [960, 480];
 const FRAME: Duration = Duration::from_millis(16);
 /// How long anything may take on a slow machine.
-const PATIENCE: Duration = Duration::from_secs(120);
+pub const PATIENCE: Duration = Duration::from_secs(120);
 /// One program on one device draws the same twice.
 const SAME: f32 = 0.0;
 /// Letters lie in an atlas in the order in which they were first drawn, and are read there to a step of 8
@@ -67,7 +60,7 @@ const FEW: usize = 50;
 /// What is seen to be another picture.
 const OTHER: f32 = 0.02;
 
-const MANIFEST: &str = r#"
+pub const MANIFEST: &str = r#"
 [exhibit]
 title = "Two sheets"
 languages = ["en", "it"]
@@ -130,14 +123,14 @@ fn free_ports() -> [u16; 2] {
 }
 
 /// A wall of two displays, each of a machine of its own, which has its own copy of the exhibit.
-struct Place {
+pub struct Place {
     root: TempDir,
     port: u16,
-    status: u16,
+    pub status: u16,
 }
 
 impl Place {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let place = Self {
             root: tempfile::tempdir().unwrap(),
             port: free_ports()[0],
@@ -165,15 +158,15 @@ impl Place {
         place
     }
 
-    fn folder(&self, machine: &str) -> PathBuf {
+    pub fn folder(&self, machine: &str) -> PathBuf {
         self.root.path().join(machine)
     }
 
-    fn exhibit(&self, machine: &str) -> PathBuf {
+    pub fn exhibit(&self, machine: &str) -> PathBuf {
         self.folder(machine).join("exhibit")
     }
 
-    fn file(&self, machine: &str) -> PathBuf {
+    pub fn file(&self, machine: &str) -> PathBuf {
         self.folder(machine).join("installation.toml")
     }
 
@@ -735,147 +728,4 @@ impl Machine {
     fn print(&mut self) -> String {
         together::exhibit_print(self.room.world().resource::<Hand>().exhibit())
     }
-}
-
-/// Set to skip these tests on a machine that cannot have an X server.
-const SKIP: &str = "RECTO_SKIP_WINDOW";
-
-/// A process that ends with the test.
-struct Running(Child);
-
-impl Running {
-    fn signal(&self, signal: Signal) {
-        kill(Pid::from_raw(self.0.id() as i32), signal).unwrap();
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-fn x_server() -> (Running, String) {
-    let started = std::process::Command::new("Xvfb")
-        .args([
-            "-displayfd",
-            "1",
-            "-screen",
-            "0",
-            "480x240x24",
-            "-nolisten",
-            "tcp",
-        ])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn();
-    let mut server = Running(started.unwrap_or_else(|error| {
-        panic!(
-            "Xvfb does not start ({error}); install it with: sudo apt-get install xvfb\n\
-             or set {SKIP}=1 to go without the windows' tests"
-        )
-    }));
-    let mut number = String::new();
-    let output = server.0.stdout.take().unwrap();
-    BufReader::new(output).read_line(&mut number).unwrap();
-    (server, format!(":{}", number.trim()))
-}
-
-fn show(place: &Place, machine: &str, display: &str) -> Running {
-    let mut command = recto();
-    command
-        .args(["show", "--tier", "draft", "--installation"])
-        .arg(place.file(machine))
-        .env("RECTO_MACHINE", machine)
-        .env("DISPLAY", display)
-        .env_remove("WAYLAND_DISPLAY")
-        .stderr(fs::File::create(place.folder(machine).join("stderr")).unwrap());
-    Running(command.spawn().unwrap())
-}
-
-/// What a machine says of itself, while it answers.
-fn status(port: u16) -> Option<Value> {
-    let mut stream = TcpStream::connect(("127.0.0.1", port)).ok()?;
-    stream
-        .set_read_timeout(Some(Duration::from_millis(500)))
-        .ok()?;
-    stream
-        .write_all(b"GET /status.json HTTP/1.1\r\nHost: localhost\r\n\r\n")
-        .ok()?;
-    let mut text = String::new();
-    stream.read_to_string(&mut text).ok()?;
-    serde_json::from_str(text.split_once("\r\n\r\n")?.1).ok()
-}
-
-#[track_caller]
-fn until(what: &str, holds: impl Fn() -> bool) {
-    let begun = Instant::now();
-    while !holds() {
-        assert!(begun.elapsed() < PATIENCE, "{what}: never");
-        thread::sleep(Duration::from_millis(20));
-    }
-    println!("{what}: {:.0} ms", begun.elapsed().as_secs_f64() * 1e3);
-}
-
-#[test]
-fn processes_on_loopback_are_stopped_and_killed_and_go_on() {
-    if std::env::var_os(SKIP).is_some() {
-        eprintln!("skipped: {SKIP} is set");
-        return;
-    }
-    let place = Place::new();
-    let (_server, display) = x_server();
-    let (west, east) = (place.status, place.status + 1);
-    let follower = show(&place, "east", &display);
-    let leader = show(&place, "west", &display);
-    let of = |port: u16, pointer: &str| status(port).and_then(|s| s.pointer(pointer).cloned());
-    let shown = || of(east, "/machines/leader/shown_version").and_then(|v| v.as_u64());
-    let heard = || of(east, "/machines/leader/heard_version").and_then(|v| v.as_u64());
-    let width = |mm: u32| {
-        let text = MANIFEST.replace("lamps = [\"left\"]\n[[scene]]", &format!(
-            "lamps = [\"left\"]\ncamera = {{ centre_mm = [150, 100], width_mm = {mm} }}\n[[scene]]"
-        ));
-        assert_ne!(text, MANIFEST);
-        for machine in ["west", "east"] {
-            fs::write(place.exhibit(machine).join("exhibit.toml"), &text).unwrap();
-        }
-    };
-    until("two processes are one wall", || shown().is_some());
-    let faults = || {
-        of(east, "/faults")
-            .map(|f| f.to_string())
-            .unwrap_or_default()
-    };
-    until("nothing is wrong", || faults() == "[]");
-
-    // A follower that stands still, while the exhibit changes.
-    let before = shown();
-    follower.signal(Signal::SIGSTOP);
-    width(100);
-    until("the leader misses it", || {
-        of(west, "/faults").is_some_and(|f| f.to_string().contains("east has been silent"))
-    });
-    follower.signal(Signal::SIGCONT);
-    until("it has caught up", || {
-        shown() > before && shown() == heard() && faults() == "[]"
-    });
-    until("and the leader knows", || {
-        of(west, "/faults") == Some(json!([]))
-    });
-
-    // A leader that is killed, and begins anew.
-    let scene = of(east, "/scene");
-    drop(leader);
-    until("the follower misses it", || {
-        faults().contains("west has been silent")
-    });
-    assert_eq!(of(east, "/scene"), scene);
-    let leader = show(&place, "west", &display);
-    until("it is followed again, from its start", || faults() == "[]");
-    let begun = heard();
-    width(120);
-    until("and goes on", || shown() > begun);
-    drop((leader, follower));
 }
