@@ -16,7 +16,7 @@
 //! | [`stage`] | what is shown: loading, sides, camera, legend, the last pass over two members or an enhanced one, reload on save |
 //! | [`visitor`] | the window: hands, lamp, controls, keys, caption, hotspots, tools, views saved and exported, the tour while nobody is there |
 //! | [`readings`] | tools laid on a side of an exhibit: values, units, uncertainty, one line of words |
-//! | [`wall`] | the wall by itself: the house of an installation; health, status page, log and counts; publishing, heartbeat, supervisor |
+//! | [`wall`] | the wall by itself: the house of an installation, also of several machines; health, status page, log and counts; publishing, heartbeat, supervisor |
 //! | [`wording`] | what the program says on the screen, in every language, and the museum's own |
 //! | [`shot`], [`develop`] | pictures without a window, and their encoding for display |
 //! | [`figure`] | a print that can be made again: its scale bar and its sidecar |

@@ -264,6 +264,121 @@ fn other_machines_read_the_status_only_where_that_is_meant() {
     );
 }
 
+/// Two displays, each with its machine.
+fn machines(west: &str, east: &str, machines: &str) -> String {
+    let display = |id: &str, left: u32, machine: &str| {
+        format!(
+            "[[display]]\nid = \"{id}\"\npixels = [100, 100]\nsize_mm = [100, 100]\n\
+             left_mm = {left}\n{machine}\n"
+        )
+    };
+    let (left, right) = (display("a", 0, west), display("b", 120, east));
+    format!("{SMALL}{machines}\n{left}{right}")
+}
+
+const TWO: &str = "[machines]\nlead = \"west\"\naddress = \"127.0.0.1:7447\"\n";
+
+#[test]
+fn machines_carry_their_displays_and_know_who_leads() {
+    let text = machines("machine = \"west\"", "machine = \"east\"", TWO);
+    let place = sound(&text);
+    let named = |asked, host| place.machine(asked, host);
+    let east = named(Some("east"), Some("west")).unwrap().unwrap();
+    assert!(!east.leads() && east.index() == 1);
+    assert!(named(None, Some("west")).unwrap().unwrap().leads());
+    assert_eq!(east.status("127.0.0.1:8017".parse().unwrap()).port(), 8018);
+    assert_eq!(east.machines.delay.as_millis(), 10);
+    let wall = place.wall.as_ref().unwrap();
+    // Each desktop begins at its own first pixel.
+    let [window] = &wall.layout_on(Some("east"))[..] else {
+        panic!("one window");
+    };
+    assert_eq!(
+        (window.on_desktop.at, window.on_desktop.size),
+        ([0, 0], [100, 100])
+    );
+    assert_eq!(window.panes[0].display, 1);
+    assert!(window.panes[0].of_picture.min.x > 0.5);
+    assert!(wall.layout_on(Some("north")).is_empty());
+
+    let unknown = named(Some("esat"), None).unwrap_err().to_string();
+    assert!(
+        unknown.contains("--machine: found \"esat\"; allowed: \"west\" or \"east\""),
+        "{unknown}"
+    );
+    assert!(unknown.contains("did you mean \"east\"?"), "{unknown}");
+    let nobody = named(None, Some("kiosk-7")).unwrap_err().to_string();
+    assert!(nobody.contains("RECTO_MACHINE=NAME"), "{nobody}");
+    let alone = sound(SMALL);
+    assert_eq!(alone.machine(None, Some("west")).unwrap(), None);
+    assert!(
+        alone
+            .machine(Some("west"), None)
+            .unwrap_err()
+            .to_string()
+            .contains("[machines]")
+    );
+}
+
+#[test]
+fn faults_of_machines_are_told_and_nothing_is_open_to_others_by_mistake() {
+    let (west, east) = ("machine = \"west\"", "machine = \"east\"");
+    let with = |more: &str| machines(west, east, &format!("{TWO}{more}"));
+    let at = |address: &str, more: &str| with(more).replace("127.0.0.1:7447", address);
+    for (text, words) in [
+        (
+            machines(west, east, ""),
+            "display[0].machine: found \"west\" without [machines]",
+        ),
+        (
+            machines(west, "", TWO),
+            "display[1]: found no machine, where there are several",
+        ),
+        (
+            machines(east, east, TWO),
+            "machines.lead: found \"west\"; allowed: \"east\"",
+        ),
+        (
+            format!("{SMALL}{TWO}"),
+            "machines: found machines without a display",
+        ),
+        (
+            at("0.0.0.0:7447", ""),
+            "machines.address: found \"0.0.0.0:7447\", which is nobody's own",
+        ),
+        (
+            at("192.168.1.10:7447", ""),
+            "found \"192.168.1.10:7447\", which other machines reach",
+        ),
+        (at("127.0.0.1:0", ""), "machines.address: found port 0"),
+        (
+            at("west:7447", ""),
+            "machines.address: found \"west:7447\"; allowed: the leader's address",
+        ),
+        (with("delay_ms = 501\n"), "machines.delay_ms: found 501"),
+        (
+            with("lost_after_seconds = 1\n"),
+            "machines.lost_after_seconds: found 1",
+        ),
+    ] {
+        let found = faults(&text);
+        assert!(
+            found.iter().any(|fault| fault.contains(words)),
+            "{words}: {found:#?}"
+        );
+    }
+    sound(&at("192.168.1.10:7447", "beyond_this_machine = true\n"));
+    let warned = |text: &str| Place::new(text).read(Use::Desk).unwrap().1;
+    let one = machines(west, west, TWO);
+    assert!(
+        warned(&one)[0].contains("\"west\" alone"),
+        "{:?}",
+        warned(&one)
+    );
+    let meant = with("beyond_this_machine = true\n");
+    assert!(warned(&meant)[0].contains("which only this machine reaches"));
+}
+
 #[test]
 fn an_icc_profile_of_a_display_is_read() {
     let place = Place::new(&format!(
@@ -366,6 +481,22 @@ fn the_schema_accepts_what_the_parser_accepts() {
     };
     judge(EXAMPLE);
     judge(SMALL);
+    let two = machines("machine = \"west\"", "machine = \"east\"", TWO);
+    judge(&two);
+    for (line, other) in [
+        ("lead = \"west\"\n", ""),
+        ("lead = \"west\"\n", "lead = \"the west\"\n"),
+        ("address =", "adress ="),
+        ("machine = \"east\"", "machine = 7"),
+        ("lead =", "delay_ms = 20\nlead ="),
+        ("lead =", "delay_ms = -1\nlead ="),
+        ("lead =", "lost_after_seconds = 5\nlead ="),
+        ("lead =", "lost_after_seconds = \"5\"\nlead ="),
+        ("lead =", "beyond_this_machine = true\nlead ="),
+    ] {
+        assert!(two.contains(line));
+        judge(&two.replacen(line, other, 1));
+    }
     // Every line of the example left out, misspelt, or with another value.
     for line in EXAMPLE
         .lines()

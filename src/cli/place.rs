@@ -9,7 +9,7 @@ use jiff::{ToSpan, Zoned};
 
 use super::{Failure, output};
 use crate::{
-    installation::{Every, Installation, Profile, Wall, WallWindow, Windows},
+    installation::{Every, Installation, Machines, Profile, Wall, WallWindow, Windows},
     manifest::{Exhibit, Fault, Faults},
 };
 
@@ -62,6 +62,9 @@ impl Display for Place<'_> {
         match &place.wall {
             Some(wall) => self.wall(wall, f)?,
             None => writeln!(f, "  the display that there is, as the system describes it")?,
+        }
+        if let (Some(machines), Some(wall)) = (&place.machines, &place.wall) {
+            self.machines(machines, wall, f)?;
         }
         self.hours(f)?;
         let turns = match (place.exhibits.every, self.exhibits.len()) {
@@ -123,20 +126,49 @@ impl Display for Place<'_> {
     }
 }
 
+/// How windows lie on displays.
+fn windows(wall: &Wall, windows: &[WallWindow]) -> String {
+    match (wall.windows, windows) {
+        (Windows::Spanning, [window]) => {
+            let [width, height] = window.on_desktop.size;
+            format!("one window of {width} × {height} pixels")
+        }
+        (_, [_]) => "1 window".to_owned(),
+        (_, windows) => format!("{} windows", windows.len()),
+    }
+}
+
 impl Place<'_> {
+    fn machines(&self, machines: &Machines, wall: &Wall, f: &mut Formatter<'_>) -> fmt::Result {
+        for name in &machines.names {
+            let layout = wall.layout_on(Some(name));
+            let mine = layout.iter().flat_map(|window| &window.panes);
+            let mine: Vec<&str> = mine
+                .map(|pane| wall.displays[pane.display].id.as_str())
+                .collect();
+            let role = match *name == machines.lead {
+                true => format!("leads, at {}", machines.address),
+                false => format!("follows after {} ms", machines.delay.as_secs_f64() * 1e3),
+            };
+            writeln!(
+                f,
+                "    machine {name} {role}: {}, {}",
+                mine.join(", "),
+                windows(wall, &layout)
+            )?;
+        }
+        Ok(())
+    }
+
     fn wall(&self, wall: &Wall, f: &mut Formatter<'_>) -> fmt::Result {
         let size = wall.size_mm();
         let displays = match wall.displays.len() {
             1 => "1 display".to_owned(),
             count => format!("{count} displays"),
         };
-        let windows: Vec<WallWindow> = wall.layout();
-        let windows = match (wall.windows, &windows[..]) {
-            (Windows::Spanning, [window]) => {
-                let [width, height] = window.on_desktop.size;
-                format!("one window of {width} × {height} pixels")
-            }
-            (_, windows) => format!("{} windows", windows.len()),
+        let windows = match &self.installation.machines {
+            Some(machines) => format!("{} machines", machines.names.len()),
+            None => windows(wall, &wall.layout()),
         };
         let height = wall.top_above_floor_mm.map_or(String::new(), |top| {
             format!(", from {:.0} to {top:.0} mm above the floor", top - size.y)

@@ -1,10 +1,10 @@
 //! `recto show`, and `recto` alone
 
-use std::path::PathBuf;
+use std::{env, fs, path::PathBuf};
 
 use super::{Failure, options};
 use crate::{
-    installation::{Installation, Use},
+    installation::{Installation, Use, machines::MACHINE},
     optics::tier::Tier,
     stage::say,
     visitor::{self, Manners, ShowError, ShowOptions, Waits},
@@ -52,6 +52,10 @@ pub struct Arguments {
     /// The place, its displays, hours and exhibits, from a file as exhibits/installation.toml
     #[arg(long, value_name = "FILE", conflicts_with_all = ["exhibit", "scene", "link"])]
     installation: Option<PathBuf>,
+    /// Which machine of the installation this is, where several carry the wall; without it,
+    /// RECTO_MACHINE or the computer's own name says it
+    #[arg(long, value_name = "NAME", requires = "installation")]
+    machine: Option<String>,
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
@@ -78,7 +82,15 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         for warning in warnings {
             say(warning);
         }
-        return ended(house::show(installation, &options)?);
+        // A name that the environment has for all installations is none of one machine's.
+        let named = || {
+            env::var(MACHINE)
+                .ok()
+                .filter(|_| installation.machines.is_some())
+        };
+        let machine = arguments.machine.or_else(named);
+        let machine = installation.machine(machine.as_deref(), host().as_deref())?;
+        return ended(house::show(installation, machine, &options)?);
     }
     let path = arguments.exhibit.or_else(sample_exhibit).ok_or_else(|| {
         Failure::Usage(
@@ -87,6 +99,12 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         )
     })?;
     ended(visitor::show(&path, &options)?)
+}
+
+/// The computer's own name, where the system tells it.
+fn host() -> Option<String> {
+    let name = fs::read_to_string("/proc/sys/kernel/hostname").ok()?;
+    Some(name.trim().to_owned())
 }
 
 fn ended(code: u8) -> Result<(), Failure> {

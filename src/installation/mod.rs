@@ -7,6 +7,7 @@
 //! | the same declarations → JSON Schema | [`schema()`] |
 //! | plain data → [`Installation`] | `validate` |
 //! | displays on the wall and on the desktop, and where hands reach | [`wall`] |
+//! | which machine carries which of them, and who leads | [`machines`] |
 //! | colours meant → values of a display | [`profile`] |
 //! | when the screens are lit | [`hours`] |
 //! | whose turn it is | [`exhibits`] |
@@ -16,6 +17,7 @@
 pub mod exhibits;
 pub mod hours;
 pub mod interface;
+pub mod machines;
 pub mod profile;
 pub mod raw;
 pub mod staff;
@@ -34,6 +36,7 @@ use serde_json::Value;
 pub use exhibits::{Every, Exhibits};
 pub use hours::{Closed, Hours, Span};
 pub use interface::{Contrast, Idle, Interface};
+pub use machines::{Machine, Machines};
 pub use profile::{Correction, Profile, Tone};
 pub use staff::Pin;
 pub use wall::{Display, Pane, PixelRect, Reach, Rect, Wall, WallWindow, Windows};
@@ -69,6 +72,8 @@ pub struct Installation {
     pub languages: Vec<String>,
     /// `None` where no display is described: the one that there is, as the system says it is.
     pub wall: Option<Wall>,
+    /// `None` where one machine carries the wall alone.
+    pub machines: Option<Machines>,
     pub reach: Reach,
     pub idle: Idle,
     pub hours: Hours,

@@ -6,9 +6,9 @@
 use super::{
     interface::Contrast,
     values::{
-        ClockText, ClosedText, CountdownSeconds, DesktopPx, DisplayMm, DisplayNits, Enlargement,
-        EveryMinutes, FloorMm, Gamma, IdleSeconds, LogFiles, LogMegabytes, MachinePath, PinText,
-        ReachMm, SidePx, SpanText, WallMm, WhiteXy,
+        ClockText, ClosedText, CountdownSeconds, DelayMs, DesktopPx, DisplayMm, DisplayNits,
+        Enlargement, EveryMinutes, FloorMm, Gamma, IdleSeconds, LogFiles, LogMegabytes,
+        LostSeconds, MachinePath, PinText, ReachMm, SidePx, SpanText, WallMm, WhiteXy,
     },
     wall::Windows,
 };
@@ -36,6 +36,9 @@ record! {
             bottom_above_floor_mm: FloorMm,
             /// The displays, each below its own `[[display]]`. Without any, the one that there is.
             display: List<RawDisplay, 1, 32>,
+            /// Several machines that carry this wall together; each of them has this file. Without it,
+            /// this machine alone.
+            machines: RawMachines,
             /// Where hands reach.
             reach: RawReach,
             /// When nobody is there.
@@ -100,10 +103,34 @@ record! {
             /// What the system calls it, such as DP-1 or HDMI-2. Without it: what shows
             /// desktop_px.
             monitor: Text,
+            /// The machine that it is plugged into, where there are several.
+            machine: Id,
             /// How it shows colours. Without it: as sRGB says.
             profile: RawProfile,
         }
         rules [Rule::AtMostOne(&["top_mm", "bottom_above_floor_mm"])]
+    }
+}
+
+record! {
+    /// Several machines that carry one wall together.
+    pub struct RawMachines {
+        required {
+            /// The machine that hands touch, by the name that displays give it; the others follow it.
+            lead: Id,
+            /// That machine's address and a port of it, at which the others reach it.
+            address: Text,
+        }
+        optional {
+            /// The address is reached by other machines, and is meant to be.
+            beyond_this_machine: bool,
+            /// How many ms after the leader the others show a picture, to be even where the network is
+            /// not. Without it: 10.
+            delay_ms: DelayMs,
+            /// After how many seconds without a word a machine is told of as lost. Without it: 5.
+            lost_after_seconds: LostSeconds,
+        }
+        rules []
     }
 }
 

@@ -32,6 +32,10 @@ number! {
     IdleSeconds = 5.0 ..= 3600.0, "s";
     /// How long the countdown can be refused.
     CountdownSeconds = 3.0 ..= 120.0, "s";
+    /// How long after the leader other machines show a picture.
+    DelayMs = 0.0 ..= 500.0, "ms";
+    /// How long a machine may be silent.
+    LostSeconds = 2.0 ..= 600.0, "s";
     /// How much larger texts are.
     Enlargement = 1.0 ..= 3.0, "";
 }

@@ -98,6 +98,8 @@ pub struct Display {
     pub on_desktop: PixelRect,
     /// What the system calls it, where the installation says so.
     pub monitor: Option<String>,
+    /// The machine that it is plugged into, where several carry the wall.
+    pub machine: Option<String>,
     pub profile: Profile,
 }
 
@@ -158,9 +160,19 @@ impl Wall {
             .fold(DVec2::ZERO, DVec2::max)
     }
 
-    /// The windows that cover it.
+    /// The windows that cover it, where one machine carries it.
     pub fn layout(&self) -> Vec<WallWindow> {
-        let all: Vec<usize> = (0..self.displays.len()).collect();
+        self.layout_on(None)
+    }
+
+    /// The windows that cover the displays of a machine, or of all; none where it has no displays.
+    pub fn layout_on(&self, machine: Option<&str>) -> Vec<WallWindow> {
+        let is_on =
+            |k: &usize| machine.is_none() || self.displays[*k].machine.as_deref() == machine;
+        let all: Vec<usize> = (0..self.displays.len()).filter(is_on).collect();
+        if all.is_empty() {
+            return Vec::new();
+        }
         let groups: Vec<&[usize]> = match self.windows {
             Windows::Spanning => vec![&all],
             Windows::Each => all.chunks(1).collect(),
@@ -273,6 +285,7 @@ mod tests {
                 size: [1920, 1080],
             },
             monitor: None,
+            machine: None,
             profile: Profile::Srgb,
         }
     }

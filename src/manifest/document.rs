@@ -164,7 +164,7 @@ pub(crate) fn read_text_of(file: &Path, allowed: &str, remedy: &str) -> Result<S
 }
 
 /// Tells one text of a manifest from another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Fingerprint(u64);
 
 impl Fingerprint {

@@ -10,7 +10,7 @@
 use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use glam::{DAffine2, DVec2, DVec3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{document::Fingerprint, link::Link, raw::RawLamp};
 use crate::{
@@ -222,7 +222,9 @@ pub struct Side {
 }
 
 /// Which side of a sheet.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum SideName {
     #[default]
@@ -658,7 +660,7 @@ impl Comparison {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompareMode {
     Curtain,

@@ -67,6 +67,11 @@ impl Attract {
         self.doing
     }
 
+    /// As another machine does; nothing comes of it here.
+    pub fn be(&mut self, doing: Doing) {
+        (self.waits, self.doing) = (None, doing);
+    }
+
     /// Whether it tours.
     pub fn is_touring(&self) -> bool {
         matches!(self.doing, Doing::Touring { .. })

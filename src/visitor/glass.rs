@@ -19,7 +19,8 @@ pub struct Glass {
 /// A part of the picture in a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pane {
-    pub window: Entity,
+    /// None where another machine shows it.
+    pub window: Option<Entity>,
     /// In the window's logical pixels.
     pub in_window: Rect,
     /// In the picture's.
@@ -41,7 +42,8 @@ impl Default for Glass {
 impl Glass {
     /// The place in the picture of a place in a window; beyond its panes, as the nearest one goes on.
     fn place(&self, window: Entity, at: Vec2) -> Vec2 {
-        let panes = self.panes.iter().filter(|pane| pane.window == window);
+        let panes = self.panes.iter();
+        let panes = panes.filter(|pane| pane.window == Some(window));
         let away = |pane: &&Pane| {
             let nearest = at.clamp(pane.in_window.min, pane.in_window.max);
             nearest.distance_squared(at)
@@ -56,7 +58,7 @@ impl Glass {
     /// The number of a finger among all windows, whose glasses may number theirs alike.
     fn number(&self, window: Entity, id: u64) -> u64 {
         let mut windows = self.panes.iter().map(|pane| pane.window);
-        let which = windows.position(|of| of == window).unwrap_or(0) as u64;
+        let which = windows.position(|of| of == Some(window)).unwrap_or(0) as u64;
         id ^ which << 48
     }
 
@@ -99,7 +101,7 @@ mod tests {
     fn a_place_under_one_hand_is_told_across_displays() {
         let [left, right] = [1, 2].map(|k| Entity::from_raw_u32(k).expect("an entity"));
         let pane = |window, x: f32| Pane {
-            window,
+            window: Some(window),
             in_window: Rect::new(0.0, 0.0, 1000.0, 500.0),
             in_picture: Rect::new(x, 0.0, x + 1000.0, 500.0),
         };

@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use bevy::{input::touch::TouchPhase, prelude::*, window::WindowEvent};
+use serde::{Deserialize, Serialize};
 
 use super::{
     attending::{Closed, House},
@@ -21,7 +22,7 @@ const GESTURE_S: f64 = 8.0;
 const TOOL_S: f64 = 20.0;
 
 /// What there is to be told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Hint {
     /// A finger turns the sheet.
     Turn,
@@ -77,6 +78,12 @@ impl Hints {
     /// What is being told.
     pub fn now(&self) -> Option<Hint> {
         self.now
+    }
+
+    /// As another machine says.
+    pub fn be(&mut self, now: Option<Hint>) {
+        let left_s = now.map_or(0.0, Hint::seconds);
+        (self.now, self.left_s) = (now, left_s);
     }
 
     /// How long until the line goes by itself.

@@ -54,6 +54,21 @@ pub struct Seen {
 }
 
 impl Hotspots {
+    /// Whether somebody asked to see them.
+    pub fn is_shown(&self) -> bool {
+        self.shown
+    }
+
+    /// The id of the open one.
+    pub fn open_id(&self) -> Option<&str> {
+        self.open.as_deref()
+    }
+
+    /// As another machine says it.
+    pub fn be(&mut self, shown: bool, open: Option<String>) {
+        (self.shown, self.open) = (shown, open);
+    }
+
     /// Learns how the sheet is shaped.
     fn learn(&mut self, drawing: &Drawing, surface: &Arc<SideSurface>) {
         let known = self.curled.as_ref().is_some_and(|curled| {

@@ -171,6 +171,11 @@ impl Devices {
         self.pointer
     }
 
+    /// As another machine says.
+    pub fn point_at(&mut self, at: Option<Vec2>) {
+        self.pointer = at;
+    }
+
     /// How long nobody has done anything.
     pub fn quiet(&self, now: Duration) -> Duration {
         now.saturating_sub(self.heard)

@@ -3,8 +3,12 @@
 
 use bevy::prelude::Resource;
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use super::view::wrapped;
+use super::{
+    hand::mirrored::{Exact, Pair, pair, vector},
+    view::wrapped,
+};
 use crate::{
     manifest::{exhibit::SideName, hotspot::contains},
     readings::{Disc, PROBE_MM, Reading, Tool, Why, sight::Seen},
@@ -14,7 +18,8 @@ use crate::{
 const SAME_PX: f64 = 2.0;
 
 /// What can be laid on the sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Kind {
     Ruler,
     Path,
@@ -88,7 +93,7 @@ impl Kind {
 }
 
 /// A side of a drawing in a state, by their ids.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OnSide {
     pub drawing: String,
     pub side: SideName,
@@ -293,6 +298,101 @@ impl Measuring {
         if let Some(laid) = self.laid.iter_mut().find(|laid| laid.number == number) {
             laid.said = said;
         }
+    }
+}
+
+/// Tools as another machine is told of them, which reads by itself what they say.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ToldMeasuring {
+    kind: Option<Kind>,
+    laying: Option<ToldTool>,
+    laid: Vec<(u64, Kind, ToldTool)>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct ToldTool {
+    on: OnSide,
+    places: Vec<Pair>,
+    screen_mm: Exact,
+    sheet: usize,
+}
+
+impl ToldTool {
+    fn places(&self) -> Vec<DVec2> {
+        self.places.iter().copied().map(vector).collect()
+    }
+}
+
+impl ToldMeasuring {
+    /// Whether tools have the places that they need.
+    pub fn check(&self) -> Result<(), String> {
+        for (_, kind, told) in &self.laid {
+            if kind.at(&told.places()).is_none() {
+                return Err(format!("a tool of {} places", told.places.len()));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Measuring {
+    /// What another machine is told.
+    pub fn told(&self) -> ToldMeasuring {
+        let tool = |on: &OnSide, places: &[DVec2], screen_mm, sheet| ToldTool {
+            on: on.clone(),
+            places: places.iter().copied().map(pair).collect(),
+            screen_mm: Exact(screen_mm),
+            sheet,
+        };
+        ToldMeasuring {
+            kind: self.kind,
+            laying: self
+                .laying
+                .as_ref()
+                .map(|l| tool(&l.on, &l.places, l.screen_mm, l.sheet)),
+            laid: self
+                .laid
+                .iter()
+                .map(|l| {
+                    let told = tool(&l.on, &l.places, l.screen_mm, l.sheet);
+                    (l.number, l.kind, told)
+                })
+                .collect(),
+        }
+    }
+
+    /// As another machine says; what was read of the same tools stays.
+    pub fn be(&mut self, told: &ToldMeasuring) {
+        let before = std::mem::take(&mut self.laid);
+        self.kind = told.kind;
+        self.ended = false;
+        self.laying = told.laying.as_ref().map(|laying| Laying {
+            on: laying.on.clone(),
+            places: laying.places(),
+            screen_mm: laying.screen_mm.0,
+            sheet: laying.sheet,
+        });
+        let laid = told.laid.iter().filter_map(|(number, kind, told)| {
+            let places = told.places();
+            let laid = Laid {
+                number: *number,
+                on: told.on.clone(),
+                kind: *kind,
+                tool: kind.at(&places)?,
+                places,
+                screen_mm: told.screen_mm.0,
+                sheet: told.sheet,
+                said: Said::Waiting,
+            };
+            let same = before.iter().find(|before| {
+                (before.number, &before.tool, &before.on) == (laid.number, &laid.tool, &laid.on)
+            });
+            Some(match same {
+                Some(same) => same.clone(),
+                None => laid,
+            })
+        });
+        self.laid = laid.collect();
     }
 }
 

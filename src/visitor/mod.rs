@@ -19,6 +19,7 @@
 //! | texts, and the fonts of every language | `caption`, `letters` |
 //! | while nobody is there | `attract` |
 //! | what displays are measured by | [`chart`] |
+//! | what another machine of the wall is told, and shows | [`mirror`] |
 //! | what is heard when it is about to go home | `chime` |
 //! | what only the staff gets at | `staff` |
 //! | what a resting window is woken for | `alarm` |
@@ -53,6 +54,7 @@ mod lamp;
 pub mod letters;
 mod marks;
 mod measuring;
+pub mod mirror;
 mod motion;
 mod notice;
 mod pace;

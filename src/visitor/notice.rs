@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 use crate::{manifest::SaveError, wording::Spoken};
 
 /// What became of a wish.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Notice {
     /// As a scene of this id.
     Saved(String),
@@ -18,7 +20,7 @@ pub enum Notice {
 }
 
 /// Why a view is not saved; the terminal has it all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotSaved {
     Changed,
     ReadOnly,

@@ -45,6 +45,13 @@ impl Pointer {
         self.wanted
     }
 
+    /// As another machine says.
+    pub fn be(&mut self, reads: bool) {
+        if self.wanted != reads {
+            self.switch();
+        }
+    }
+
     /// Somebody asks for what lies there, or no longer.
     pub fn switch(&mut self) {
         self.wanted = !self.wanted;

@@ -38,6 +38,8 @@ enum State {
     /// Typing, with what was typed.
     Asking(String),
     Open,
+    /// On another machine.
+    Elsewhere,
 }
 
 /// The staff's panel.
@@ -73,6 +75,19 @@ impl StaffPanel {
     /// Whether it covers the sheet.
     pub fn is_open(&self) -> bool {
         self.state != State::Closed
+    }
+
+    /// It is open on another machine, or not.
+    pub fn be_elsewhere(&mut self, open: bool) {
+        self.state = match open {
+            true => State::Elsewhere,
+            false => State::Closed,
+        };
+    }
+
+    /// Whether it is open on another machine.
+    pub fn is_elsewhere(&self) -> bool {
+        self.state == State::Elsewhere
     }
 
     /// A contact lands at `at` (logical pixels from the top left corner).
@@ -168,7 +183,7 @@ impl StaffPanel {
         };
         let back = button(Staff::Back, Some(Icon::Back), "back");
         match &self.state {
-            State::Closed => None,
+            State::Closed | State::Elsewhere => None,
             State::Asking(typed) => {
                 let left = self.locked_until.saturating_sub(self.now);
                 let said = match (left.is_zero(), self.wrong) {

@@ -104,6 +104,36 @@ pub fn follow(
     }
 }
 
+/// Reads what the tools say that another machine laid, each once.
+pub fn ask_for_told(
+    (hand, shown, waker): (Res<Hand>, Res<Shown>, Res<Waker>),
+    (mut measuring, mut reader): (ResMut<Measuring>, ResMut<Reader>),
+    mut asked: Local<Vec<u64>>,
+) {
+    let measuring = measuring.bypass_change_detection();
+    asked.retain(|number| measuring.laid().iter().any(|laid| laid.number == *number));
+    let new: Vec<Laid> = measuring
+        .laid()
+        .iter()
+        .filter(|laid| laid.said == Said::Waiting && !asked.contains(&laid.number))
+        .cloned()
+        .collect();
+    for laid in new {
+        asked.push(laid.number);
+        match read_on(hand.exhibit(), &shown.scene, &laid.on) {
+            Some(scene) => {
+                let errand = Errand::Tool {
+                    number: laid.number,
+                    tool: laid.tool,
+                    screen_mm: laid.screen_mm,
+                };
+                reader.ask(hand.exhibit().clone(), scene, errand, &waker);
+            }
+            None => measuring.hear(laid.number, Said::Nothing(Why::Gone)),
+        }
+    }
+}
+
 /// The side that a scene without a comparison shows, or the other one.
 fn on(exhibit: &Exhibit, scene: &Scene, side: SideName) -> OnSide {
     let drawing = exhibit.drawing_of(scene);

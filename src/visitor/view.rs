@@ -25,11 +25,11 @@ const SHARPEN: f64 = 0.6;
 
 /// An overlay as the hand left it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Layer {
+pub struct Layer {
     /// Index into the drawing's overlays.
-    overlay: usize,
-    opacity: f64,
-    on: bool,
+    pub overlay: usize,
+    pub opacity: f64,
+    pub on: bool,
 }
 
 /// The light of the lamp in the hand.
@@ -58,7 +58,7 @@ pub struct View {
     /// Index into the drawing's states.
     pub state: Option<usize>,
     /// Every overlay of the drawing, those of the scene first, from the lowest.
-    layers: Vec<Layer>,
+    pub layers: Vec<Layer>,
     /// Of overlays of which not all categories are shown, those that are, as in a scene.
     pub categories: BTreeMap<usize, Vec<usize>>,
     /// Of the first lamp that can be moved.

@@ -55,6 +55,7 @@ use super::{
     letters::{self, FontFolder},
     marks::{self, Marks, Shape},
     measuring::Measuring,
+    mirror::{self, Led, Unfollowed},
     pace::{self, Pace},
     pointing::{self, Pointer},
     reader::Reader,
@@ -201,6 +202,7 @@ impl Plugin for VisitorPlugin {
             .init_resource::<Closed>()
             .init_resource::<Chart>()
             .init_resource::<AskAgain>()
+            .init_resource::<Unfollowed>()
             .add_message::<StaffWish>()
             .add_message::<Verdict>()
             .init_resource::<Controls>()
@@ -230,14 +232,23 @@ impl Plugin for VisitorPlugin {
                     (
                         take_in_reread,
                         measure,
-                        (attending::attend, chime::ring).chain(),
-                        attending::read_devices,
-                        operate::operate,
-                        attending::serve_staff,
+                        (
+                            attending::attend,
+                            chime::ring,
+                            attending::read_devices,
+                            operate::operate,
+                            attending::serve_staff,
+                        )
+                            .chain()
+                            .run_if(not(resource_exists::<Led>)),
+                        (mirror::leave, mirror::follow)
+                            .chain()
+                            .run_if(resource_exists::<Led>),
                         speech::speak,
-                        steer,
+                        steer.run_if(not(resource_exists::<Led>)),
                         tools::follow,
-                        hints::follow,
+                        tools::ask_for_told.run_if(resource_exists::<Led>),
+                        hints::follow.run_if(not(resource_exists::<Led>)),
                         follow_wishes,
                         saving::keep,
                         export::export,
@@ -245,7 +256,12 @@ impl Plugin for VisitorPlugin {
                         .chain()
                         .in_set(StageSet::Steer),
                     (
-                        (fall_back, foresee, marks::learn).chain(),
+                        (
+                            fall_back,
+                            foresee.run_if(not(resource_exists::<Led>)),
+                            marks::learn,
+                        )
+                            .chain(),
                         (comparing::lay, hotspots::lay).chain(),
                         (tools::hear, pointing::point, tools::lay).chain(),
                         marks::draw,
@@ -467,7 +483,7 @@ fn steer(
     }
 }
 
-fn differs(a: &Shown, b: &Shown) -> bool {
+pub(super) fn differs(a: &Shown, b: &Shown) -> bool {
     !Arc::ptr_eq(&a.exhibit, &b.exhibit)
         || a.scene != b.scene
         || a.pose != b.pose

@@ -2,10 +2,10 @@
 
 use std::{
     collections::VecDeque,
-    fs,
+    fmt, fs,
     path::Path,
     sync::{
-        Mutex, MutexGuard, PoisonError,
+        Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicU64, Ordering},
     },
     time::{Duration, Instant},
@@ -13,6 +13,8 @@ use std::{
 
 use jiff::{Timestamp, Zoned, civil::Date};
 use serde::Serialize;
+
+use super::together::Standing;
 
 /// Frame times are kept for so long.
 const WINDOW: Duration = Duration::from_secs(60);
@@ -95,6 +97,9 @@ pub struct Report {
     pub sessions_today: u64,
     /// Lines and counts that could not be written down.
     pub lines_lost: u64,
+    /// Where several machines carry the wall.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub machines: Option<Standing>,
 }
 
 /// How the wall is. Shared by an `Arc`; no caller waits for another longer than it takes to copy a few
@@ -105,6 +110,17 @@ pub struct Health {
     frames_completed: AtomicU64,
     lines_lost: AtomicU64,
     inner: Mutex<Inner>,
+    machines: Machines,
+}
+
+/// Whoever knows how it is with other machines.
+#[derive(Default)]
+struct Machines(OnceLock<Box<dyn Fn() -> Option<Standing> + Send + Sync>>);
+
+impl fmt::Debug for Machines {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Machines").finish_non_exhaustive()
+    }
 }
 
 #[derive(Debug, Default)]
@@ -128,7 +144,14 @@ impl Health {
             frames_completed: AtomicU64::new(0),
             lines_lost: AtomicU64::new(0),
             inner: Mutex::default(),
+            machines: Machines::default(),
         }
+    }
+
+    /// From now on `asked` says how it is with other machines, whenever somebody wants to know.
+    pub fn ask_machines(&self, asked: impl Fn() -> Option<Standing> + Send + Sync + 'static) {
+        // There is one wall, and whoever came first stays.
+        let _ = self.machines.0.set(Box::new(asked));
     }
 
     /// A frame was completed in so many milliseconds.
@@ -198,6 +221,9 @@ impl Health {
             (inner.about.clone(), times, sessions)
         };
         let mut about = about;
+        let machines = self.machines.0.get().and_then(|asked| asked());
+        let missed = machines.iter().flat_map(|standing| &standing.faults);
+        about.faults.extend(missed.cloned());
         about.faults.truncate(MOST_FAULTS);
         Report {
             version: env!("CARGO_PKG_VERSION"),
@@ -211,6 +237,7 @@ impl Health {
             temperature_c: temperature_c(Path::new("/sys/class/thermal")),
             sessions_today,
             lines_lost: self.lines_lost.load(Ordering::Relaxed),
+            machines,
         }
     }
 

@@ -26,9 +26,10 @@ use super::{
     heartbeat::Heart,
     keeper::{self, Clock, Keeper},
     panes::{self, PaneMaterial, PanesPlugin},
+    together::{self, Turn},
 };
 use crate::{
-    installation::{Contrast, Installation, Pane, Wall},
+    installation::{Contrast, Installation, Machine, Pane, Wall, WallWindow},
     stage::{StageSet, composite::PictureCamera, say},
     visitor::{
         self, Manners, ShowError, ShowOptions, Waits,
@@ -42,17 +43,27 @@ use crate::{
 /// Between two looks at whether frames were completed.
 const POLL: Duration = Duration::from_millis(500);
 
-/// Shows the exhibits of `installation` until somebody who may ends it.
+/// Shows the exhibits of `installation` until somebody who may ends it; as one `machine` of several, its part
+/// of them.
 ///
 /// # Errors
 /// As [`visitor::show`], where none of its exhibits can be shown.
-pub fn show(installation: Installation, options: &ShowOptions) -> Result<u8, ShowError> {
+pub fn show(
+    installation: Installation,
+    machine: Option<Machine>,
+    options: &ShowOptions,
+) -> Result<u8, ShowError> {
     let folder = installation.interface.wording.as_deref();
     let (wordings, warnings) = Wordings::read(folder)?;
     for warning in warnings {
         say(warning);
     }
-    let keeper = Keeper::new(installation, Clock::default());
+    let installation = match &machine {
+        Some(machine) => machine.own(installation),
+        None => installation,
+    };
+    let mut keeper = Keeper::new(installation, Clock::default());
+    keeper.machine = machine;
     let path = keeper.showable()?;
     let manners = manners(&keeper.installation, options.manners.clone());
     let options = ShowOptions {
@@ -98,17 +109,21 @@ pub fn furnish(app: &mut App, keeper: Keeper, wordings: Wordings) {
     app.insert_resource(ProgramWords(wordings))
         .insert_resource(FontFolder(fonts));
     if let Some(wall) = keeper.installation.wall.clone() {
-        hang(app, &wall);
+        hang(app, &wall, keeper.machine.as_ref());
     }
     if let Some(heart) = keeper.heart.clone() {
         beat(app, heart);
+    }
+    if let Some(party) = keeper.party() {
+        together::join(app, party);
+        app.insert_resource(Turn(keeper.showing()));
     }
     app.insert_resource(keeper)
         .add_systems(Update, keeper::keep.before(StageSet::Steer));
 }
 
-/// One picture over all displays.
-fn hang(app: &mut App, wall: &Wall) {
+/// One picture over all displays, in the windows of this machine.
+fn hang(app: &mut App, wall: &Wall, machine: Option<&Machine>) {
     app.add_plugins(PanesPlugin);
     let size = panes::picture_size(wall);
     let world = app.world_mut();
@@ -118,7 +133,8 @@ fn hang(app: &mut App, wall: &Wall) {
     let mut windows = world.query_filtered::<Entity, With<PrimaryWindow>>();
     let primary = windows.iter(world).next();
     let mut hung = Vec::new();
-    for (k, of) in wall.layout().iter().enumerate() {
+    let layout = wall.layout_on(machine.map(|machine| machine.name.as_str()));
+    for (k, of) in layout.iter().enumerate() {
         let window = panes::window(of, "Recto");
         let entity = match primary.filter(|_| k == 0) {
             Some(entity) => world.entity_mut(entity).insert(window).id(),
@@ -142,17 +158,10 @@ fn hang(app: &mut App, wall: &Wall) {
             .collect();
         hung.push((entity, of));
     }
-    let glass = Glass {
-        size: size.as_vec2(),
-        pixels: size,
-        width_mm: Some(wall.size_mm().x),
-        home: 0,
-        panes: hung
-            .iter()
-            .flat_map(|(window, of)| of.iter().map(|(pane, _)| on_glass(*window, pane, size)))
-            .collect(),
-    };
-    world.insert_resource(glass);
+    let own = hung
+        .iter()
+        .flat_map(|(window, of)| of.iter().map(|(pane, _)| (*window, pane)));
+    world.insert_resource(glass_of(wall, &own.collect::<Vec<_>>(), size));
     let mut hung = Some(hung);
     app.add_systems(
         PostStartup,
@@ -169,7 +178,28 @@ fn hang(app: &mut App, wall: &Wall) {
     );
 }
 
-fn on_glass(window: Entity, pane: &Pane, size: UVec2) -> glass::Pane {
+/// The whole picture, with all panes in the order of the displays, so that machines name them alike.
+fn glass_of(wall: &Wall, own: &[(Entity, &Pane)], size: UVec2) -> Glass {
+    let all: Vec<WallWindow> = wall.layout();
+    let mut panes: Vec<&Pane> = all.iter().flat_map(|window| &window.panes).collect();
+    panes.sort_by_key(|pane| pane.display);
+    let window = |display: usize| own.iter().find(|(_, pane)| pane.display == display);
+    Glass {
+        size: size.as_vec2(),
+        pixels: size,
+        width_mm: Some(wall.size_mm().x),
+        home: own.first().map_or(0, |(_, pane)| pane.display),
+        panes: panes
+            .into_iter()
+            .map(|pane| match window(pane.display) {
+                Some((window, pane)) => on_glass(Some(*window), pane, size),
+                None => on_glass(None, pane, size),
+            })
+            .collect(),
+    }
+}
+
+fn on_glass(window: Option<Entity>, pane: &Pane, size: UVec2) -> glass::Pane {
     let rect = |min: DVec2, max: DVec2| Rect::from_corners(min.as_vec2(), max.as_vec2());
     let at = DVec2::from(pane.in_window.at.map(f64::from));
     let across = DVec2::from(pane.in_window.size.map(f64::from));

@@ -15,10 +15,11 @@ use super::{
     heartbeat::{self, Heart},
     journal::{Journal, Level},
     status::Status,
+    together::{self, Following, Party, Turn},
     usage::Usage,
 };
 use crate::{
-    installation::Installation,
+    installation::{Installation, Machine},
     manifest::exhibit::Exhibit,
     stage::{
         Arranged, Shown,
@@ -53,6 +54,8 @@ impl Default for Clock {
 #[derive(Resource)]
 pub struct Keeper {
     pub installation: Installation,
+    /// Which one this is, where several carry the wall.
+    pub machine: Option<Machine>,
     clock: Clock,
     health: Arc<Health>,
     journal: Journal,
@@ -64,6 +67,8 @@ pub struct Keeper {
     restart: Option<Zoned>,
     /// Whose turn it is.
     turn: usize,
+    /// Whose picture is shown, where that one is at fault.
+    showing: usize,
     /// The staff asked for so many exhibits more, the last of them just now.
     ahead: usize,
     asked: bool,
@@ -85,9 +90,9 @@ pub fn keep(
     time: Res<Time<Real>>,
     (shown, attract, arranged): (Res<Shown>, Res<Attract>, Res<Arranged>),
     (mut keeper, mut closed, mut due): (ResMut<Keeper>, ResMut<Closed>, ResMut<AskAgain>),
+    (following, told): (Option<Res<Following>>, Option<ResMut<Turn>>),
     (mut wishes, mut verdicts): (MessageReader<StaffWish>, MessageReader<Verdict>),
-    mut reread: MessageWriter<Reread>,
-    mut exit: MessageWriter<AppExit>,
+    (mut reread, mut exit): (MessageWriter<Reread>, MessageWriter<AppExit>),
     mut commands: Commands,
 ) {
     let keeper = &mut *keeper;
@@ -130,13 +135,16 @@ pub fn keep(
     for Verdict(verdict) in verdicts.read() {
         keeper.hear(verdict);
     }
-    keeper.open(&now, &mut closed);
-    keeper.change_exhibit(
-        &now,
-        !attract.is_visited() || closed.0,
-        &mut reread,
-        &mut commands,
-    );
+    let led = following.as_ref().and_then(|following| following.is_dark());
+    keeper.open(&now, led, &mut closed);
+    // A machine that follows shows what the one that leads does.
+    if following.is_none() {
+        let is_empty = !attract.is_visited() || closed.0;
+        keeper.change_exhibit(&now, is_empty, &mut reread, &mut commands);
+        if let Some(mut told) = told {
+            told.set_if_neq(Turn(keeper.showing()));
+        }
+    }
     keeper.tell(&shown, &attract, closed.0, seconds);
     let next = [keeper.change.clone(), keeper.restart.clone()];
     let next = next.into_iter().flatten().filter_map(|then| {
@@ -146,7 +154,8 @@ pub fn keep(
             .map(|s| Duration::from_secs(s + 1))
     });
     let turn = keeper.installation.exhibits.until_next(&now);
-    due.0 = next.chain(turn).min();
+    let again = following.and_then(|following| following.due());
+    due.0 = next.chain(turn).chain(again).min();
 }
 
 impl Keeper {
@@ -180,6 +189,8 @@ impl Keeper {
                 .as_ref()
                 .and_then(|_| installation.hours.next_restart(&now)),
             turn: installation.exhibits.turn(&now),
+            showing: installation.exhibits.turn(&now),
+            machine: None,
             ahead: 0,
             asked: false,
             has_shown: false,
@@ -207,13 +218,17 @@ impl Keeper {
     ///
     /// # Errors
     /// The faults of the one whose turn it is, where none can.
-    pub fn showable(&self) -> Result<PathBuf, ShowError> {
+    pub fn showable(&mut self) -> Result<PathBuf, ShowError> {
         let folders = &self.installation.exhibits.folders;
         let mut first = None;
         for k in 0..folders.len() {
-            let folder = &folders[(self.turn + k) % folders.len()];
+            let showing = (self.turn + k) % folders.len();
+            let folder = &folders[showing];
             match Exhibit::read(folder) {
-                Ok(_) => return Ok(folder.clone()),
+                Ok(_) => {
+                    self.showing = showing;
+                    return Ok(folder.clone());
+                }
                 Err(faults) => {
                     say(&faults);
                     first = first.or(Some(faults));
@@ -226,8 +241,24 @@ impl Keeper {
         }
     }
 
-    /// Dark outside the opening hours.
-    fn open(&mut self, now: &Zoned, closed: &mut ResMut<Closed>) {
+    /// The place of the exhibit that is shown among those of the installation.
+    pub fn showing(&self) -> usize {
+        self.showing
+    }
+
+    /// What makes it one of several, where it is.
+    pub fn party(&self) -> Option<Party> {
+        Some(Party {
+            machine: self.machine.clone()?,
+            wall: together::wall_print(&self.installation),
+            folders: self.installation.exhibits.folders.clone(),
+            journal: self.journal.clone(),
+            health: self.health.clone(),
+        })
+    }
+
+    /// Dark outside the opening hours, or as the machine that leads says, while it is heard.
+    fn open(&mut self, now: &Zoned, led: Option<bool>, closed: &mut ResMut<Closed>) {
         let hours = &self.installation.hours;
         if self.change.as_ref().is_some_and(|change| change <= now) {
             self.change = hours.next_change(now);
@@ -240,7 +271,7 @@ impl Keeper {
             let said = if is_open { "opens" } else { "closes" };
             self.journal.write(Level::Info, said, &[]);
         }
-        closed.set_if_neq(Closed(!is_open && !self.stays));
+        closed.set_if_neq(Closed(led.unwrap_or(!is_open && !self.stays)));
     }
 
     /// Files were found sound or faulty.
@@ -276,9 +307,11 @@ impl Keeper {
         }
         (self.turn, self.asked) = (turn, false);
         for k in 0..folders.len() {
-            let folder = &folders[(turn + k) % folders.len()];
+            let showing = (turn + k) % folders.len();
+            let folder = &folders[showing];
             match Exhibit::read(folder) {
                 Ok((exhibit, _)) => {
+                    self.showing = showing;
                     let said = folder.display().to_string();
                     self.journal
                         .write(Level::Info, "exhibit", &[("folder", said.into())]);

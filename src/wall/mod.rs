@@ -6,6 +6,7 @@
 //! | [`house`] | an installation's displays, manners and words, and the window that has them |
 //! | [`keeper`] | follows the clock, the staff and the visitors in it |
 //! | [`panes`] | one picture over several displays |
+//! | [`together`] | several machines of one wall: one leads, the others follow |
 //! | [`publish`] | an exhibit's new version, whole or not at all |
 //! | [`heartbeat`] | what a window says of itself, for whoever looks after it |
 //! | [`supervise`] | begins it anew when it crashes, hangs or ends |
@@ -24,4 +25,5 @@ pub mod publish;
 mod signals;
 pub mod status;
 pub mod supervise;
+pub mod together;
 pub mod usage;

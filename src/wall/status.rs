@@ -30,7 +30,10 @@ use tokio::{
     time::{Sleep, sleep},
 };
 
-use super::health::{Health, Report};
+use super::{
+    health::{Health, Report},
+    together::{Role, Standing},
+};
 
 /// From its first byte to the last of its answer, a connection may take so long.
 const LIFETIME: Duration = Duration::from_secs(5);
@@ -197,6 +200,9 @@ fn page(report: &Report) -> String {
     );
     row("sessions today", &report.sessions_today.to_string());
     row("lines lost", &report.lines_lost.to_string());
+    for (name, words) in report.machines.iter().flat_map(machines) {
+        row(&name, &words);
+    }
     row(
         "started",
         &format!("{}, {} ago", report.started, ago(report.uptime_s)),
@@ -222,6 +228,51 @@ fn page(report: &Report) -> String {
          <p>{}, again in {AGAIN_S} s; <a href=\"/status.json\">as JSON</a></p></body></html>\n",
         escaped(&report.now)
     )
+}
+
+/// Who this machine is among others, and how it is with them.
+fn machines(standing: &Standing) -> Vec<(String, String)> {
+    let silent = |s: Option<f64>| match s {
+        Some(s) => format!("heard {s:.1} s ago"),
+        None => "not heard yet".to_owned(),
+    };
+    let clock = |offset: Option<f64>, within: Option<f64>| match (offset, within) {
+        (Some(offset), Some(within)) => {
+            format!(", clock {offset:.1} ± {within:.1} ms from the leader's")
+        }
+        _ => String::new(),
+    };
+    let mut rows = vec![(
+        "machine".to_owned(),
+        match standing.role {
+            Role::Leads => format!("{}, leads at {}", standing.machine, standing.address),
+            Role::Follows => format!("{}, follows {}", standing.machine, standing.address),
+        },
+    )];
+    for peer in &standing.followers {
+        let behind = match peer.behind {
+            Some(0) => ", up to date".to_owned(),
+            Some(n) => format!(", {n} pictures behind"),
+            None => String::new(),
+        };
+        let words = format!(
+            "{}{behind}{}",
+            silent(peer.silent_s),
+            clock(peer.clock_offset_ms, peer.clock_within_ms)
+        );
+        rows.push((format!("follower {}", peer.machine), words));
+    }
+    if let Some(leader) = &standing.leader {
+        let version = leader.shown_version;
+        let words = format!(
+            "{}{}{}",
+            silent(leader.silent_s),
+            version.map_or(String::new(), |version| format!(", picture {version}")),
+            clock(leader.clock_offset_ms, leader.clock_within_ms)
+        );
+        rows.push(("leader".to_owned(), words));
+    }
+    rows
 }
 
 fn ago(s: u64) -> String {

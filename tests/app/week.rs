@@ -116,7 +116,7 @@ impl Week {
             ..Manners::default()
         };
         let manners = house::manners(&installation, kiosk);
-        let keeper = Keeper::new(installation, clock);
+        let mut keeper = Keeper::new(installation, clock);
         let exhibit = keeper.showable().unwrap_or_else(|error| panic!("{error}"));
         let session = Session::at(&exhibit, manners, folder, |app| {
             house::furnish(app, keeper, Wordings::default());

@@ -40,6 +40,7 @@ fn display(left: u32, profile: Profile) -> Display {
             size: [SIZE; 2],
         },
         monitor: None,
+        machine: None,
         profile,
     }
 }

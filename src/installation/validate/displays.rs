@@ -1,5 +1,7 @@
 //! Displays: each in its place, none in that of another.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 
 use super::{
@@ -50,7 +52,8 @@ impl Validator<'_, '_> {
             .iter()
             .any(|(_, display)| display.bottom_above_floor_mm.is_some());
         let mut displays: Vec<(usize, Display)> = Vec::new();
-        let mut next_px = 0;
+        // Each machine has a desktop of its own.
+        let mut next_px: BTreeMap<Option<&str>, i32> = BTreeMap::new();
         for (i, raw) in list.iter() {
             let trail = trail.index(i);
             if from_floor && raw.bottom_above_floor_mm.is_none() {
@@ -61,7 +64,8 @@ impl Validator<'_, '_> {
                 );
                 self.report.fault(&trail, words);
             }
-            let display = self.display(raw, &mut next_px, &trail);
+            let machine = raw.machine.as_ref().map(|machine| machine.as_str());
+            let display = self.display(raw, next_px.entry(machine).or_default(), &trail);
             for (other, earlier) in &displays {
                 self.apart(&display, earlier, &trail, *other);
             }
@@ -131,6 +135,10 @@ impl Validator<'_, '_> {
                 .monitor
                 .as_ref()
                 .map(|monitor| monitor.as_str().to_owned()),
+            machine: raw
+                .machine
+                .as_ref()
+                .map(|machine| machine.as_str().to_owned()),
             profile: self.profile(raw.profile.as_ref(), &trail.key("profile")),
         }
     }
@@ -148,7 +156,8 @@ impl Validator<'_, '_> {
             );
             refuse("id", found, "ids that differ", "rename one of the two");
         }
-        if display.monitor.is_some() && display.monitor == earlier.monitor {
+        let shares_desktop = display.machine == earlier.machine;
+        if display.monitor.is_some() && display.monitor == earlier.monitor && shares_desktop {
             let found = format!("the monitor of display[{other}]");
             refuse(
                 "monitor",
@@ -167,7 +176,7 @@ impl Validator<'_, '_> {
             let remedy = "correct left_mm, top_mm or bottom_above_floor_mm of one of the two";
             refuse("left_mm", found, "displays side by side", remedy);
         }
-        if display.on_desktop.overlaps(&earlier.on_desktop) {
+        if display.on_desktop.overlaps(&earlier.on_desktop) && shares_desktop {
             let found = format!("pixels of the desktop that \"{}\" shows", earlier.id);
             refuse(
                 "desktop_px",

@@ -3,6 +3,7 @@
 
 mod displays;
 mod hours;
+mod machines;
 
 use std::{
     net::{IpAddr, Ipv4Addr, SocketAddr},
@@ -57,6 +58,7 @@ impl Validator<'_, '_> {
         let exhibits = self.exhibits(&raw.exhibits, &root.key("exhibits"));
         let languages = self.languages(raw, &root.key("languages"));
         let wall = self.wall(raw, &root);
+        let machines = self.machines(raw, &root);
         let reach = self.reach(raw, wall.as_ref(), &root.key("reach"));
         let idle = idle(raw);
         let hours = self.hours(raw.hours.as_ref(), &root.key("hours"));
@@ -70,6 +72,7 @@ impl Validator<'_, '_> {
             exhibits: exhibits?,
             languages,
             wall,
+            machines,
             reach: reach?,
             idle,
             hours: hours?,

@@ -107,7 +107,8 @@ pub fn arrange(
         text: text_size(size.y.min(SHAPE * size.x)) * QUIET * interface.text_factor(),
         right_to_left: spoken.from_right(),
     };
-    let shown_at_all = (interface.wanted && !attract.is_touring()) || staff.is_open();
+    let is_quiet = attract.is_touring() || staff.is_elsewhere();
+    let shown_at_all = interface.wanted && !is_quiet || staff.is_open() && !staff.is_elsewhere();
     let laid = if shown_at_all {
         let offered = &languages.offered;
         let mut facts = facts::facts(&shown, &hand, &measuring, &interface, (spoken, offered));

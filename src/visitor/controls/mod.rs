@@ -19,6 +19,7 @@ pub mod thumbs;
 use std::collections::BTreeSet;
 
 use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::measuring::Kind;
 use crate::manifest::exhibit::CompareMode;
@@ -29,7 +30,7 @@ use icons::Icon;
 use layout::Item;
 
 /// What can be opened. Of those at the side where reading begins one is open at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Panel {
     Light,
     Scenes,
@@ -47,7 +48,7 @@ impl Panel {
 }
 
 /// Set-ups of the lamp that are one touch away.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Preset {
     Zenithal,
     Oblique,
@@ -70,7 +71,7 @@ impl Preset {
 }
 
 /// What the staff can do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Staff {
     Quit,
     Restart,
@@ -83,7 +84,7 @@ pub enum Staff {
 }
 
 /// What is touched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Control {
     Home,
     Flip,

@@ -2,6 +2,7 @@
 //! shown of it. No device, window or engine is needed to move it.
 
 mod carrying;
+pub mod mirrored;
 mod touring;
 
 pub use touring::stops;
@@ -138,6 +139,8 @@ pub struct Hand {
     good: Option<Good>,
     /// Scenes that could not be shown.
     refused: BTreeSet<usize>,
+    /// Another machine's hand moves it.
+    is_led: bool,
     pub(super) hotspots: Hotspots,
 }
 
@@ -176,6 +179,7 @@ impl Hand {
             both_sides: false,
             good: None,
             refused: BTreeSet::new(),
+            is_led: false,
             hotspots: Hotspots::default(),
         }
     }
@@ -426,7 +430,7 @@ impl Hand {
 
     /// Whether members of a comparison take turns by themselves.
     pub fn takes_turns(&self) -> bool {
-        !self.calm && self.view.compare.as_ref().is_some_and(takes_turns)
+        !self.calm && !self.is_led && self.view.compare.as_ref().is_some_and(takes_turns)
     }
 
     /// Whether something goes on moving without being touched.
@@ -436,7 +440,7 @@ impl Hand {
             || self.zoom.is_some()
             || self.straight.is_some()
             || self.flip.is_some();
-        comes || (glides && self.grip.is_none())
+        !self.is_led && (comes || (glides && self.grip.is_none()))
     }
 
     /// What is to be shown.
@@ -549,7 +553,7 @@ impl Hand {
 
     /// Whether a cheaper tier is good enough just now.
     pub fn is_hurried(&self) -> bool {
-        self.hurried
+        self.hurried && !self.is_led
     }
 
     /// The tier at rest, which a hurried picture may not have.
