@@ -149,6 +149,7 @@ impl Darkroom {
                 target_of(&text_target),
                 TextCamera {
                     height: 1.0,
+                    width: f32::INFINITY,
                     foot: 0.0,
                 },
                 Msaa::Off,
@@ -313,6 +314,7 @@ impl Darkroom {
             target_of(&self.text_target),
             TextCamera {
                 height: size.y as f32,
+                width: f32::INFINITY,
                 foot: 0.0,
             },
         ));

@@ -57,12 +57,29 @@ pub struct ProgramWords(pub Wordings);
 #[derive(Resource, Debug, Default)]
 pub struct Speaks(pub String);
 
-/// The camera that draws the texts, and the height of its picture in pixels, at the foot of which so
-/// many are somebody else's.
+/// A tall picture's text is that of one of this shape, height over width.
+const SHAPE: f32 = 0.75;
+
+/// The camera that draws the texts, and the size of its picture in pixels, at the foot of which so many
+/// are somebody else's.
 #[derive(Component)]
 pub struct TextCamera {
     pub height: f32,
+    /// Where it is tall, people stand before it as before a wide one; infinite where nobody does.
+    pub width: f32,
     pub foot: f32,
+}
+
+impl TextCamera {
+    /// Size of the body text.
+    pub fn text_size(&self) -> f32 {
+        text_size_for(self.width, self.height)
+    }
+}
+
+/// Size of the body text for a picture of so many pixels that people stand before.
+pub fn text_size_for(width: f32, height: f32) -> f32 {
+    text_size(height.min(SHAPE * width))
 }
 
 /// The legend's root node.
@@ -123,7 +140,7 @@ fn draw(
     if overlays.is_empty() && difference.is_none() && marks.is_empty() {
         return;
     }
-    let size = text_size(text.height);
+    let size = text.text_size();
     let words = Words {
         shown: &shown,
         face: &face.0,

@@ -24,7 +24,7 @@ use crate::{
     },
     stage::{
         Shown,
-        legend::{self, Face, TextCamera, line, text_size},
+        legend::{self, Face, TextCamera, line},
     },
     wording::{self, Spoken},
 };
@@ -77,7 +77,7 @@ pub fn write(
         return;
     };
     let spoken = speech.spoken();
-    let size = text_size(text.height) * QUIET * interface.text_factor();
+    let size = text.text_size() * QUIET * interface.text_factor();
     let profile = profile(&measuring);
     let curve = |curve: &Curve| {
         let title = phrases::curve(curve, &shown, spoken);

@@ -15,7 +15,7 @@ use crate::{
     optics::tier::Tier,
     stage::{
         Shown,
-        legend::{Face, TextCamera, line, text_size},
+        legend::{Face, TextCamera, line},
     },
     wording::{Spoken, catalogue},
 };
@@ -80,7 +80,7 @@ pub fn draw(
     let (Ok((camera, text)), Some(face)) = (cameras.single(), face) else {
         return;
     };
-    let size = text_size(text.height) * QUIET * interface.text_factor();
+    let size = text.text_size() * QUIET * interface.text_factor();
     let spoken = speech.spoken();
     let invitation = attract.is_touring();
     let wanted = Drawn {

@@ -16,7 +16,7 @@ use crate::{
     readings::sight::{Lying, surface_point},
     stage::{
         Arranged, Library, Shown,
-        legend::{Face, TextCamera, line, text_size},
+        legend::{Face, TextCamera, line},
         library::{Held, Request},
     },
 };
@@ -338,7 +338,7 @@ pub fn draw(
     for mark in &drawn {
         commands.entity(mark).despawn();
     }
-    let size = text_size(text.height) * WORDS;
+    let size = text.text_size() * WORDS;
     let all = marks
         .compared
         .iter()

@@ -348,6 +348,7 @@ fn set_up(mut commands: Commands) {
         camera_bundle(0),
         TextCamera {
             height: 1.0,
+            width: 1.0,
             foot: 0.0,
         },
     ));
@@ -425,8 +426,8 @@ fn measure(
     glass.set_if_neq(wanted);
     picture_size.0 = pixels;
     for mut text in &mut texts {
-        if text.height != size.y {
-            text.height = size.y;
+        if (text.width, text.height) != (size.x, size.y) {
+            (text.width, text.height) = (size.x, size.y);
         }
     }
     let width_px = window.physical_width();

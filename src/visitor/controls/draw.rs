@@ -14,7 +14,7 @@ pub use crate::stage::legend::ProgramWords;
 use crate::{
     stage::{
         Shown,
-        legend::{Face, TextCamera, text_size},
+        legend::{Face, TextCamera, text_size_for},
     },
     visitor::{
         attract::Attract, glass::Glass, hand::Hand, hints::Hints, measuring::Measuring,
@@ -24,8 +24,6 @@ use crate::{
 
 /// The text's size against that of the legend.
 const QUIET: f32 = 0.85;
-/// A tall picture's text is that of one of this shape.
-const SHAPE: f32 = 0.75;
 /// Rings of the dial: lamps at 45° and at the least height that a hand gives them.
 const RINGS: [f32; 2] = [std::f32::consts::FRAC_1_SQRT_2, 0.9986];
 /// The lamp on the dial, of the dial's side.
@@ -104,7 +102,7 @@ pub fn arrange(
         size,
         px_per_mm: glass.size.x / hand.picture().width_mm.max(1.0) as f32,
         reach: reach.0.map(|reach| reach.map(|row| row - home.min.y)),
-        text: text_size(size.y.min(SHAPE * size.x)) * QUIET * interface.text_factor(),
+        text: text_size_for(size.x, size.y) * QUIET * interface.text_factor(),
         right_to_left: spoken.from_right(),
     };
     let is_quiet = attract.is_touring() || staff.is_elsewhere();

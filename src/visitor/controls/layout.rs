@@ -12,6 +12,8 @@ const TARGET_MM: f32 = 15.0;
 const GAP: f32 = 0.14;
 /// Width of a character, and height of a line, in heights of the text.
 const CHARACTER: f32 = 0.6;
+/// And of one that fills a square.
+const WIDE: f32 = 1.05;
 const LINE: f32 = 1.35;
 /// A sign's side in heights of the text.
 const SIGN: f32 = 2.1;
@@ -159,7 +161,12 @@ impl Room {
     }
 
     fn width_of(&self, words: &str) -> f32 {
-        words.chars().count() as f32 * CHARACTER * self.text
+        let widths = words.chars().map(|letter| match letter {
+            // Ideographs and kana are as wide as they are high (Unicode's East Asian Width).
+            '\u{2e80}'.. => WIDE,
+            _ => CHARACTER,
+        });
+        widths.sum::<f32>() * self.text
     }
 
     /// `laid` as it is for those who read from the right.

@@ -159,3 +159,24 @@ fn a_countdown_and_the_staff_s_pad_cover_all_else() {
     let laid = lay(&room, &facts);
     assert_eq!(laid.widgets.len(), 1);
 }
+
+#[test]
+fn signs_as_wide_as_they_are_high_have_room_in_one_line() {
+    let room = Room {
+        size: Vec2::new(1080.0, 1920.0),
+        px_per_mm: 2.04,
+        reach: None,
+        text: 16.0,
+        right_to_left: false,
+    };
+    let mut facts = all();
+    for item in &mut facts.bar {
+        item.words = "見どころ".into();
+    }
+    let laid = lay(&room, &facts);
+    let mut bar = laid.widgets.iter();
+    let widget = bar.find(|widget| widget.control == Control::Scene(0));
+    let width = widget.expect("a bar").rect.width();
+    assert!(width >= 4.0 * room.text, "{width}");
+    assert!(width < 6.5 * room.text, "no wider than it needs: {width}");
+}
