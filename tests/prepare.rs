@@ -1,0 +1,17 @@
+//! The photographer's bench: photographs → maps, judged by surfaces that are known.
+
+mod support;
+
+#[path = "prepare/capture.rs"]
+mod capture;
+#[path = "prepare/colour.rs"]
+mod colour;
+#[path = "prepare/lights.rs"]
+mod lights;
+#[path = "prepare/photographs.rs"]
+mod photographs;
+
+/// A folder that lives as long as the test.
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
