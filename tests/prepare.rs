@@ -11,6 +11,9 @@ mod lights;
 #[path = "prepare/photographs.rs"]
 mod photographs;
 
+#[path = "prepare/stereo.rs"]
+mod stereo;
+
 /// A folder that lives as long as the test.
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")

@@ -47,9 +47,7 @@ pub fn luma([r, g, b]: [&[f32]; 3]) -> Vec<f32> {
     let encoded = |v: f32| srgb_encode((f64::from(v) / brightest).clamp(0.0, 1.0));
     let pixels = r.iter().zip(g).zip(b);
     pixels
-        .map(|((r, g), b)| {
-            (0.299 * encoded(*r) + 0.587 * encoded(*g) + 0.114 * encoded(*b)) as f32
-        })
+        .map(|((r, g), b)| (0.299 * encoded(*r) + 0.587 * encoded(*g) + 0.114 * encoded(*b)) as f32)
         .collect()
 }
 
@@ -82,7 +80,7 @@ pub fn highlight(
         })
     };
     let value = |(x, y): (usize, usize)| luma[y * width + x];
-    let brightest = on_ball().map(value).fold(0.0, f64::max);
+    let brightest = on_ball().map(value).fold(0.0, f32::max);
     if !(brightest > 0.0 && brightest.is_finite()) {
         return Err(NoHighlight::None);
     }
@@ -115,11 +113,8 @@ pub fn mirrored(at: DVec2, circle: Circle) -> DVec3 {
     2.0 * n.z * n - DVec3::Z
 }
 
-/// The median of whole numbers; the mean of the middle two of an even number.
+/// The median of whole numbers, one of them: of an even count the upper one.
 fn median(values: &mut [usize]) -> f64 {
     values.sort_unstable();
-    match values.len() {
-        0 => 0.0,
-        n => (values[(n - 1) / 2] + values[n / 2]) as f64 / 2.0,
-    }
+    values.get(values.len() / 2).map_or(0.0, |v| *v as f64)
 }
