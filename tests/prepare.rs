@@ -11,6 +11,8 @@ mod lights;
 #[path = "prepare/photographs.rs"]
 mod photographs;
 
+#[path = "prepare/relief.rs"]
+mod relief;
 #[path = "prepare/stereo.rs"]
 mod stereo;
 

@@ -8,7 +8,7 @@
 //! | a lamp's light over the picture, from a grey card | [`flat_field`] |
 //! | a camera's colours → the sheet's | [`colour`] |
 //! | photographs under lamps → albedo and normals | [`stereo`] |
-//! | normals → the sheet's shape and its grain, in mm | `relief` |
+//! | normals → the sheet's shape and its grain, in mm | [`relief`] |
 //!
 //! Lamps and normals are in the sheet's frame: x right, y up in the photograph, z towards the
 //! camera; a photograph's rows run down from its top.
@@ -19,4 +19,5 @@ pub mod flat_field;
 pub mod lights;
 pub mod linear;
 pub mod photographs;
+pub mod relief;
 pub mod stereo;
