@@ -1,11 +1,15 @@
 //! Normals → heights.
 //!
-//! Slopes p = ∂h/∂x and q = ∂h/∂row are asked of the differences of neighbouring heights, each of
-//! the mean of both ends' slopes, and h is their least squares. Its normal equations are Poisson's
-//! with nothing flowing over the perimeter (free), which a cosine transform turns into products:
-//! the solution is exact, without iterations (Simchony, Chellappa & Shao, *IEEE Transactions on
-//! Pattern Analysis and Machine Intelligence* 12 (1990) 435). With the perimeter anchored at 0 it
-//! is a sine transform.
+//! Slopes p = ∂h/∂x and q = ∂h/∂row are those in the middle of pixels. With the perimeter free, h
+//! is a sum of cosines, which nothing flows over the perimeter of, beside the plane of the mean
+//! slopes; its slopes are sums of sines, term by term, so that their least squares are a product of
+//! transforms: exact, without iterations, and as sharp as the normals (Frankot & Chellappa, *IEEE
+//! Transactions on Pattern Analysis and Machine Intelligence* 10 (1988) 439, with cosines for
+//! exponentials).
+//!
+//! The other ways ask slopes of the differences of neighbouring heights, each of the mean of both
+//! ends' slopes, which leaves less of the smallest relief: with the perimeter anchored at 0, by a
+//! sine transform (Simchony, Chellappa & Shao, *ibid.* 12 (1990) 435), and the robust way.
 //!
 //! Creases break the assumption that errors are small everywhere. The robust way weighs each
 //! difference by how far it is from its slope (Cauchy's weights, found in turn), and solves the
@@ -79,11 +83,7 @@ pub fn integrate(slopes: &Slopes, perimeter: Perimeter) -> Vec<f64> {
     let (width, height) = (slopes.width, slopes.height());
     match perimeter {
         _ if width == 0 || height == 0 => Vec::new(),
-        Perimeter::Free => {
-            let mut right = divergence(slopes, None);
-            Poisson::new(width, height, Kind::Cosine).solve(&mut right);
-            right
-        }
+        Perimeter::Free => by_cosines(slopes),
         Perimeter::Anchored if width < 3 || height < 3 => vec![0.0; width * height],
         Perimeter::Anchored => {
             let right = divergence(slopes, None);
@@ -101,6 +101,44 @@ pub fn integrate(slopes: &Slopes, perimeter: Perimeter) -> Vec<f64> {
             h
         }
     }
+}
+
+/// The least squares of slopes, term by term.
+fn by_cosines(slopes: &Slopes) -> Vec<f64> {
+    let (width, height) = (slopes.width, slopes.height());
+    let mean = |v: &[f32]| v.iter().map(|v| f64::from(*v)).sum::<f64>() / v.len() as f64;
+    let (tilt_x, tilt_y) = (mean(&slopes.right), mean(&slopes.down));
+    let lines = |kind| [Line::new(kind, width), Line::new(kind, height)];
+    let (cosine, slope) = (lines(Kind::Cosine), lines(Kind::Slope));
+    let without =
+        |v: &[f32], tilt: f64| -> Vec<f64> { v.par_iter().map(|v| f64::from(*v) - tilt).collect() };
+    let mut h = without(&slopes.right, tilt_x);
+    transform(&mut h, width, [&slope[0], &cosine[1]], false);
+    let mut down = without(&slopes.down, tilt_y);
+    transform(&mut down, width, [&cosine[0], &slope[1]], false);
+    let (across, along) = (cosine[0].frequencies(), cosine[1].frequencies());
+    h.par_chunks_mut(width)
+        .zip(down.par_chunks(width))
+        .zip(&along)
+        .for_each(|((row, down), b)| {
+            for ((p, q), a) in row.iter_mut().zip(down).zip(&across) {
+                let square = a * a + b * b;
+                *p = if square > 0.0 {
+                    -(a * *p + b * q) / square
+                } else {
+                    0.0
+                };
+            }
+        });
+    drop(down);
+    transform(&mut h, width, cosine.each_ref(), true);
+    let (middle_x, middle_y) = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
+    h.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        for (x, value) in row.iter_mut().enumerate() {
+            *value += tilt_x * (x as f64 - middle_x) + tilt_y * (y as f64 - middle_y);
+        }
+    });
+    h
 }
 
 /// As [`integrate`] with a free perimeter, but robust: slopes that contradict the others, at

@@ -15,6 +15,9 @@ pub enum Kind {
     Cosine,
     /// DST-I: lines that are 0 just beyond their ends.
     Sine,
+    /// DST-II: what the slope of a [`Kind::Cosine`] line is expanded into, term by term; the first
+    /// term, which has none, is 0. Only forwards.
+    Slope,
 }
 
 /// The transform of lines of one length, and back.
@@ -31,7 +34,7 @@ impl Line {
     pub fn new(kind: Kind, length: usize) -> Self {
         let mut planner = FftPlanner::new();
         let size = match kind {
-            Kind::Cosine => length.max(1),
+            Kind::Cosine | Kind::Slope => length.max(1),
             Kind::Sine => 2 * (length + 1),
         };
         let turn = |k: usize| Complex64::from_polar(1.0, -PI * k as f64 / (2 * size) as f64);
@@ -44,15 +47,21 @@ impl Line {
         }
     }
 
-    /// The eigenvalue of −(second difference) for each term: 2 − 2 cos.
-    pub fn eigenvalues(&self) -> Vec<f64> {
+    /// The frequency of each term, in radians per pixel.
+    pub fn frequencies(&self) -> Vec<f64> {
         let angle = |k: usize| match self.kind {
-            Kind::Cosine => PI * k as f64 / self.length as f64,
+            Kind::Cosine | Kind::Slope => PI * k as f64 / self.length as f64,
             Kind::Sine => PI * (k + 1) as f64 / (self.length + 1) as f64,
         };
+        (0..self.length).map(angle).collect()
+    }
+
+    /// The eigenvalue of −(second difference) for each term: 2 − 2 cos.
+    pub fn eigenvalues(&self) -> Vec<f64> {
         // 4 sin²(θ/2) does not cancel for long waves.
-        (0..self.length)
-            .map(|k| 4.0 * (angle(k) / 2.0).sin().powi(2))
+        let terms = self.frequencies().into_iter();
+        terms
+            .map(|angle| 4.0 * (angle / 2.0).sin().powi(2))
             .collect()
     }
 
@@ -62,6 +71,7 @@ impl Line {
             (Kind::Cosine, false) => self.cosine(a, b, buffer),
             (Kind::Cosine, true) => self.cosine_back(a, b, buffer),
             (Kind::Sine, back) => self.sine(a, b, back, buffer),
+            (Kind::Slope, _) => self.slope(a, b, buffer),
         }
     }
 
@@ -97,6 +107,19 @@ impl Line {
             let from = if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 };
             a[i] = buffer[from].re * scale;
             b[i] = buffer[from].im * scale;
+        }
+    }
+
+    /// DST-II_m = DCT-II_(N−m) of the line with every other value negated.
+    fn slope(&self, a: &mut [f64], b: &mut [f64], buffer: &mut Vec<Complex64>) {
+        for line in [&mut *a, &mut *b] {
+            line.iter_mut().skip(1).step_by(2).for_each(|v| *v = -*v);
+        }
+        self.cosine(a, b, buffer);
+        for line in [a, b] {
+            // Terms N−1 … 1 become 1 … N−1; that of the highest frequency has no cosine.
+            line[0] = 0.0;
+            line[1..].reverse();
         }
     }
 
