@@ -126,6 +126,10 @@ pub enum ChartError {
     Small(usize),
     #[error("the patch \"{}\" is saturated; photograph the chart, and all the rest, with less exposure", name(*.0))]
     Saturated(usize),
+    #[error(
+        "the chart's patches have one hue: it lies under coloured light, or is no chart; correct its corners or the photograph"
+    )]
+    Flat,
     #[error("no chart was found; write the middles of its corner patches as corners_px")]
     NotFound,
 }
@@ -179,8 +183,29 @@ fn perspective(corners: [DVec2; 4]) -> Option<DMat3> {
 /// [`ChartError`]: outside, too small, or clipped.
 pub fn colours(
     planes: [&[f32]; 3],
+    size: [usize; 2],
+    corners: [DVec2; 4],
+) -> Result<Vec<[f64; 3]>, ChartError> {
+    read_patches(planes, size, corners, CLIPPED)
+}
+
+/// As [`colours`], of a photograph divided by a grey card's, in which no level means clipping.
+///
+/// # Errors
+/// As [`colours`].
+pub fn colours_unclipped(
+    planes: [&[f32]; 3],
+    size: [usize; 2],
+    corners: [DVec2; 4],
+) -> Result<Vec<[f64; 3]>, ChartError> {
+    read_patches(planes, size, corners, f32::INFINITY)
+}
+
+fn read_patches(
+    planes: [&[f32]; 3],
     [width, height]: [usize; 2],
     corners: [DVec2; 4],
+    clipped: f32,
 ) -> Result<Vec<[f64; 3]>, ChartError> {
     let middles = middles(corners)?;
     let half = patch_half(&middles);
@@ -203,8 +228,8 @@ pub fn colours(
                 .clone()
                 .flat_map(|y| &plane[y * width + columns.start..y * width + columns.end]);
             let mut pixels: Vec<f32> = pixels.copied().collect();
-            let clipped = pixels.iter().filter(|v| **v >= CLIPPED).count();
-            if clipped as f64 > CLIPPED_SHARE * count as f64 {
+            let over = pixels.iter().filter(|v| **v >= clipped).count();
+            if over as f64 > CLIPPED_SHARE * count as f64 {
                 return Err(ChartError::Saturated(i));
             }
             let middle = pixels.len() / 2;
