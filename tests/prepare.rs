@@ -4,6 +4,8 @@ mod support;
 
 #[path = "prepare/capture.rs"]
 mod capture;
+#[path = "prepare/chain.rs"]
+mod chain;
 #[path = "prepare/colour.rs"]
 mod colour;
 #[path = "prepare/lights.rs"]

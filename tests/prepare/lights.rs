@@ -110,9 +110,13 @@ fn balls_without_a_lamp_are_refused() {
         highlight(&white, size, circle(50.0)),
         Err(NoHighlight::Overexposed(_))
     ));
-    // One pixel in the middle mirrors the camera's own place.
+    // A single pixel is dust; a spot in the middle mirrors the camera's own place.
     let mut lit = dark;
     lit[40 * 100 + 50] = 1.0;
+    assert_eq!(highlight(&lit, size, circle(50.5)), Err(NoHighlight::None));
+    for (x, y) in [(49, 40), (51, 40), (50, 39), (50, 41)] {
+        lit[y * 100 + x] = 1.0;
+    }
     let found = highlight(&lit, size, circle(50.5)).expect("a lamp");
     assert!(found.direction.angle_between(DVec3::Z) < 0.04);
 }

@@ -14,6 +14,11 @@ use crate::colour::srgb_encode;
 pub const HIGHLIGHT: f32 = 249.5 / 255.0;
 /// How far outside the ball its outline's own gleam begins.
 const WITHIN: f64 = 0.98;
+/// How far around its middle most of a highlight lies, in radii of the ball; what is scattered more
+/// is noise, or a ball that is not glossy.
+const COMPACT: f64 = 0.25;
+/// The fewest pixels of a highlight: single ones are dust, or noise in the dark.
+const FEWEST: usize = 4;
 /// The largest share of the ball that a lamp covers; more is overexposure or a white ball.
 const LARGEST_SHARE: f64 = 0.25;
 
@@ -97,7 +102,13 @@ pub fn highlight(
     if share > LARGEST_SHARE {
         return Err(NoHighlight::Overexposed(share * 100.0));
     }
-    let at = DVec2::new(median(&mut xs) + 0.5, median(&mut ys) + 0.5);
+    let (x, y) = (median(&xs), median(&ys));
+    let near = |(a, b): (&usize, &usize)| (*a as f64 - x).hypot(*b as f64 - y) <= COMPACT * radius;
+    let compact = xs.iter().zip(&ys).filter(|place| near(*place)).count();
+    if compact < FEWEST || 2 * compact < xs.len() {
+        return Err(NoHighlight::None);
+    }
+    let at = DVec2::new(x + 0.5, y + 0.5);
     Ok(Highlight {
         at,
         direction: mirrored(at, circle),
@@ -114,7 +125,8 @@ pub fn mirrored(at: DVec2, circle: Circle) -> DVec3 {
 }
 
 /// The median of whole numbers, one of them: of an even count the upper one.
-fn median(values: &mut [usize]) -> f64 {
-    values.sort_unstable();
-    values.get(values.len() / 2).map_or(0.0, |v| *v as f64)
+fn median(values: &[usize]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable();
+    sorted.get(sorted.len() / 2).map_or(0.0, |v| *v as f64)
 }
