@@ -138,7 +138,8 @@ impl Studio {
                 }
                 let n = DVec3::new(d.x, -d.y, (1.0 - square).sqrt());
                 let mirrored = 2.0 * n.z * n - DVec3::Z;
-                let lit = mirrored.angle_between(*l) < 0.06;
+                // A lamp of 60 mm at 1.5 m.
+                let lit = mirrored.angle_between(*l) < 0.02;
                 DVec3::splat(if lit { 4.0 } else { 0.05 })
             });
         }

@@ -3,7 +3,8 @@
 //! The highlight lies where the ball mirrors the lamp into the camera: l = 2(n·v)n − v, with n the
 //! ball's normal there, v = (0, 0, 1). The lamp is seen as its *saturated* pixels, of which the
 //! median is taken: what is merely bright is the room, and its mean was measured to be 3.4° to
-//! 7.6° off (PSBox's probes).
+//! 7.6° off (PSBox's probes). The ball bends the picture of a large lamp: the median of one of
+//! 3.4° radius was measured to be 0.2° off, with the square of the radius.
 
 use glam::{DVec2, DVec3};
 

@@ -24,9 +24,14 @@ pub type Lane = [f32; LANES];
 /// A vector of each of them.
 pub type Lane3 = [Lane; 3];
 
+/// Weights of photographs that are all trusted.
+pub const ONES: Lane = [1.0; LANES];
+
 /// The lamps as the pixels of a block see them.
 pub struct Lamps {
     pub l: Vec<Lane3>,
+    /// Half way between a lamp and the eye, where the surface is paper.
+    pub h: Vec<Lane3>,
     pub gain: Vec<Lane>,
     /// π times Fresnel's factor for each lamp, where the surface is paper.
     pub fresnel: Vec<Lane>,
@@ -35,11 +40,12 @@ pub struct Lamps {
 }
 
 impl Lamps {
-    /// For the block whose first pixel is `x`, `y`.
-    pub fn new(rig: &Rig, response: &Response, x: usize, y: usize) -> Self {
+    /// For pixels whose middles are `at`, in pixels from the left and top edge.
+    pub fn new(rig: &Rig, response: &Response, at: &[DVec2; LANES]) -> Self {
         let count = rig.count();
         let mut lamps = Self {
             l: vec![[[0.0; LANES]; 3]; count],
+            h: vec![[[0.0; LANES]; 3]; count],
             gain: vec![[0.0; LANES]; count],
             fresnel: vec![[0.0; LANES]; count],
             inverse: None,
@@ -47,8 +53,7 @@ impl Lamps {
         let uniform = rig.is_uniform();
         for i in 0..count {
             for lane in 0..if uniform { 1 } else { LANES } {
-                let at = DVec2::new((x + lane) as f64 + 0.5, y as f64 + 0.5);
-                let Lit { l, gain } = rig.lamp(i, at);
+                let Lit { l, gain } = rig.lamp(i, at[lane]);
                 let l32: [f32; 3] = l.as_vec3().into();
                 for c in 0..3 {
                     lamps.l[i][c][lane] = l32[c];
@@ -56,11 +61,16 @@ impl Lamps {
                 lamps.gain[i][lane] = gain as f32;
                 if let Response::Paper(paper) = response {
                     lamps.fresnel[i][lane] = paper.fresnel(l);
+                    let h: [f32; 3] = (l + DVec3::Z).normalize().as_vec3().into();
+                    for c in 0..3 {
+                        lamps.h[i][c][lane] = h[c];
+                    }
                 }
             }
             if uniform {
                 for c in 0..3 {
                     lamps.l[i][c] = [lamps.l[i][c][0]; LANES];
+                    lamps.h[i][c] = [lamps.h[i][c][0]; LANES];
                 }
                 lamps.gain[i] = [lamps.gain[i][0]; LANES];
                 lamps.fresnel[i] = [lamps.fresnel[i][0]; LANES];
@@ -103,8 +113,9 @@ pub fn solve_weighted(lamps: &Lamps, v: &[Lane], w: Option<&[Lane]>) -> Lane3 {
     for i in 0..lamps.count() {
         let [lx, ly, lz] = &lamps.l[i];
         let gain = &lamps.gain[i];
+        let weights = w.map_or(&ONES, |w| &w[i]);
         for lane in 0..LANES {
-            let weight = w.map_or(1.0, |w| w[i][lane]);
+            let weight = weights[lane];
             let (x, y, z) = (
                 lx[lane] * gain[lane],
                 ly[lane] * gain[lane],
@@ -169,6 +180,37 @@ pub fn cosine(n: &Lane3, l: &Lane3) -> Lane {
 /// Cosines below which the paper's response is not followed: nothing is seen of it there.
 const MU_FLOOR: f32 = 0.03;
 
+/// What of a surface's response depends on the way to the eye alone.
+pub struct Leaving {
+    mu: Lane,
+    /// √(α² + (1 − α²)μ²)
+    masked: Lane,
+    t: Lane,
+    late: Lane,
+}
+
+impl Leaving {
+    /// At normals `n`, for an eye straight above.
+    pub fn new(paper: &Paper, n: &Lane3) -> Self {
+        let mut leaving = Self {
+            mu: [0.0; LANES],
+            masked: [0.0; LANES],
+            t: [0.0; LANES],
+            late: [0.0; LANES],
+        };
+        let alpha2 = paper.alpha * paper.alpha;
+        for lane in 0..LANES {
+            let mu = n[2][lane].clamp(MU_FLOOR, 1.0);
+            let x = mu.sqrt();
+            leaving.mu[lane] = mu;
+            leaving.masked[lane] = (alpha2 + (1.0 - alpha2) * mu * mu).sqrt();
+            leaving.t[lane] = polynomial(&paper.t, x) * paper.capture;
+            leaving.late[lane] = polynomial(&paper.late, x);
+        }
+        leaving
+    }
+}
+
 /// What a surface adds to, and makes of, n·l.
 pub struct Seen {
     /// Share of the body's light, 1 for a perfect diffuser.
@@ -177,33 +219,36 @@ pub struct Seen {
     pub gloss: Lane,
 }
 
-/// The response to a lamp at normals `n`, with n·l = `mu`.
-pub fn response(paper: &Paper, n: &Lane3, l: &Lane3, mu: &Lane, fresnel: &Lane) -> Seen {
+/// The response to the lamp `i` at normals `n`, with n·l = `mu`.
+pub fn response(
+    paper: &Paper,
+    n: &Lane3,
+    leaving: &Leaving,
+    lamps: &Lamps,
+    i: usize,
+    mu: &Lane,
+) -> Seen {
     let mut seen = Seen {
         diffuse: [0.0; LANES],
         gloss: [0.0; LANES],
     };
     let alpha2 = paper.alpha * paper.alpha;
+    let over_pi = paper.specular * alpha2 / std::f32::consts::PI;
+    let (h, fresnel) = (&lamps.h[i], &lamps.fresnel[i]);
     for lane in 0..LANES {
         let mu_i = mu[lane].clamp(MU_FLOOR, 1.0);
-        let mu_o = n[2][lane].clamp(MU_FLOOR, 1.0);
-        let (x_i, x_o) = (mu_i.sqrt(), mu_o.sqrt());
-        let t = polynomial(&paper.t, x_i) * polynomial(&paper.t, x_o);
-        let late = polynomial(&paper.late, x_i) * polynomial(&paper.late, x_o);
-        seen.diffuse[lane] = t * paper.capture;
-        // GGX with Smith's correlated masking, as v_smith and d_ggx of optics::microfacet.
-        let (hx, hy, hz) = (l[0][lane], l[1][lane], l[2][lane] + 1.0);
-        let scale = (hx * hx + hy * hy + hz * hz).sqrt().recip();
-        let (hx, hy, hz) = (hx * scale, hy * scale, hz * scale);
+        let x = mu_i.sqrt();
+        seen.diffuse[lane] = polynomial(&paper.t, x) * leaving.t[lane];
+        // GGX with Smith's correlated masking, as d_ggx and v_smith of optics::microfacet.
+        let (hx, hy, hz) = (h[0][lane], h[1][lane], h[2][lane]);
         let (nx, ny, nz) = (n[0][lane], n[1][lane], n[2][lane]);
         let (cx, cy, cz) = (ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx);
         let sin2 = (cx * cx + cy * cy + cz * cz).min(1.0);
         let spread = alpha2 + sin2 * (1.0 - alpha2);
-        let d = alpha2 / (std::f32::consts::PI * spread * spread);
-        let masked_i = (alpha2 + (1.0 - alpha2) * mu_i * mu_i).sqrt();
-        let masked_o = (alpha2 + (1.0 - alpha2) * mu_o * mu_o).sqrt();
-        let v = 0.5 / (mu_o * masked_i + mu_i * masked_o);
-        seen.gloss[lane] = paper.specular * d * v * fresnel[lane] + late;
+        let masked = (alpha2 + (1.0 - alpha2) * mu_i * mu_i).sqrt();
+        let way = 2.0 * (leaving.mu[lane] * masked + mu_i * leaving.masked[lane]);
+        let late = polynomial(&paper.late, x) * leaving.late[lane];
+        seen.gloss[lane] = over_pi * fresnel[lane] / (spread * spread * way) + late;
     }
     seen
 }

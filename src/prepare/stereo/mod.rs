@@ -17,13 +17,14 @@ pub mod response;
 pub mod rig;
 mod robust;
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 use super::capture::Robustness;
 pub use response::{Paper, Response};
 pub use rig::{Gain, Rig, Standing};
 
-use block::{LANES, Lamps, Lane, Lane3, cosine, normals};
+use block::{LANES, Lamps, Lane, Lane3, Leaving, ONES, cosine, normals};
 
 /// What of a colour counts when normals are solved: green has half of a camera's pixels, and the
 /// least noise.
@@ -34,6 +35,8 @@ const ROUNDS: usize = 6;
 const MOST_GLEAM: f32 = 0.8;
 /// The share of gloss at which a value counts half, where photographs contradict each other.
 const DOUBTED_GLEAM: f32 = 0.15;
+/// What a round may move g by, in shares of it, to be the last: 0.03°.
+const STILL: f32 = 5e-4;
 /// How far paper is from a diffuser, in shares of a value.
 const NOT_LAMBERT: f32 = 0.05;
 /// How often weights are found anew with the normal that they gave.
@@ -104,22 +107,40 @@ impl Solver {
         solved.doubted = out
             .enumerate()
             .map(|(y, ((((normal, red), green), blue), residual))| {
-                let mut row = Block::new(self, rows.planes.len());
-                let mut doubted = 0;
+                let mut block = Block::new(self, rows.planes.len());
+                let mut doubted = Vec::new();
+                let mut keep = |places: &[usize], shown: &Shown, first: bool| {
+                    for (lane, &x) in places.iter().enumerate() {
+                        normal[x] = [0, 1, 2].map(|c| shown.normal[c][lane]);
+                        red[x] = shown.albedo[0][lane];
+                        green[x] = shown.albedo[1][lane];
+                        blue[x] = shown.albedo[2][lane];
+                        // Of the plain solution: it tells how well the photographs agree.
+                        if first {
+                            residual[x] = shown.residual[lane];
+                        }
+                    }
+                };
+                let limit = CLOSELY * usual;
+                let doubts = self.robustness != Robustness::None && self.rig.count() > 3;
                 for x in (0..width).step_by(LANES) {
-                    let lanes = LANES.min(width - x);
-                    row.read(&rows, x, y, lanes);
-                    let shown = row.solve(self, x, rows.top + y, Some(usual));
-                    doubted += shown.doubted.min(lanes as u64);
-                    for lane in 0..lanes {
-                        normal[x + lane] = [0, 1, 2].map(|c| shown.normal[c][lane]);
-                        red[x + lane] = shown.albedo[0][lane];
-                        green[x + lane] = shown.albedo[1][lane];
-                        blue[x + lane] = shown.albedo[2][lane];
-                        residual[x + lane] = shown.residual[lane];
+                    let places: [usize; LANES] = std::array::from_fn(|lane| x + lane);
+                    let places = &places[..LANES.min(width - x)];
+                    block.read(&rows, places, y);
+                    let shown = block.solve(self, &rows, places, y);
+                    keep(places, &shown, true);
+                    if doubts {
+                        let lanes = shown.residual.iter().zip(places);
+                        doubted.extend(lanes.filter(|(r, _)| **r > limit).map(|(_, x)| *x));
                     }
                 }
-                doubted
+                // Those in doubt are gathered: they are few, and take long.
+                for places in doubted.chunks(LANES) {
+                    block.read(&rows, places, y);
+                    let shown = block.solve_doubted(self, &rows, places, y, usual);
+                    keep(places, &shown, false);
+                }
+                doubted.len() as u64
             })
             .sum();
         solved
@@ -138,10 +159,11 @@ impl Solver {
             .flat_map_iter(|i| {
                 let (x, y) = (i % across * LANES, i / across);
                 let mut block = Block::new(self, rows.planes.len());
-                let lanes = LANES.min(rows.width - x);
-                block.read(rows, x, y, lanes);
-                let shown = block.solve(self, x, rows.top + y, None);
-                shown.residual.into_iter().take(lanes)
+                let places: [usize; LANES] = std::array::from_fn(|lane| x + lane);
+                let places = &places[..LANES.min(rows.width - x)];
+                block.read(rows, places, y);
+                let shown = block.solve(self, rows, places, y);
+                shown.residual.into_iter().take(places.len())
             })
             .filter(|residual| residual.is_finite())
             .collect();
@@ -172,7 +194,6 @@ struct Shown {
     normal: Lane3,
     albedo: Lane3,
     residual: Lane,
-    doubted: u64,
 }
 
 impl Block {
@@ -183,15 +204,26 @@ impl Block {
             grey: vec![[0.0; LANES]; count],
             plain: vec![[0.0; LANES]; count],
             gleaming: vec![[0.0; LANES]; count],
-            lamps: uniform.then(|| Lamps::new(&solver.rig, &solver.response, 0, 0)),
+            lamps: uniform
+                .then(|| Lamps::new(&solver.rig, &solver.response, &[DVec2::ZERO; LANES])),
         }
     }
 
-    fn read(&mut self, rows: &Rows<'_>, x: usize, y: usize, lanes: usize) {
-        let from = y * rows.width + x;
+    /// Reads the pixels `places` (at most as many as there are lanes) of row `y`.
+    fn read(&mut self, rows: &Rows<'_>, places: &[usize], y: usize) {
+        let start = y * rows.width;
+        let lanes = places.len();
+        let (first, last) = (places[0], places[lanes - 1]);
+        let together = last - first + 1 == lanes;
         for (i, planes) in rows.planes.iter().enumerate() {
             for (lane, plane) in self.colours[i].iter_mut().zip(planes) {
-                lane[..lanes].copy_from_slice(&plane[from..from + lanes]);
+                if together {
+                    lane[..lanes].copy_from_slice(&plane[start + first..start + first + lanes]);
+                } else {
+                    for (value, x) in lane.iter_mut().zip(places) {
+                        *value = plane[start + x];
+                    }
+                }
                 lane[lanes..].fill(0.0);
             }
             let [r, g, b] = &self.colours[i];
@@ -202,36 +234,60 @@ impl Block {
         }
     }
 
-    /// Without a `usual` residual no photograph is doubted.
-    fn solve(&mut self, solver: &Solver, x: usize, y: usize, usual: Option<f32>) -> Shown {
-        let lamps = match self.lamps.take() {
-            Some(lamps) => lamps,
-            None => Lamps::new(&solver.rig, &solver.response, x, y),
-        };
-        let mut g = self.facing(solver, &lamps, None);
+    fn lamps(&mut self, solver: &Solver, rows: &Rows<'_>, places: &[usize], y: usize) -> Lamps {
+        self.lamps.take().unwrap_or_else(|| {
+            let at = std::array::from_fn(|lane| {
+                let x = places
+                    .get(lane)
+                    .or(places.last())
+                    .copied()
+                    .unwrap_or_default();
+                DVec2::new(x as f64 + 0.5, (rows.top + y) as f64 + 0.5)
+            });
+            Lamps::new(&solver.rig, &solver.response, &at)
+        })
+    }
+
+    /// All photographs believed.
+    fn solve(&mut self, solver: &Solver, rows: &Rows<'_>, places: &[usize], y: usize) -> Shown {
+        let lamps = self.lamps(solver, rows, places, y);
+        let g = self.facing(solver, &lamps, None);
         let residual = self.residual(&lamps, &g);
-        let mut weights = None;
-        let mut doubted = 0;
-        if let Some(usual) = usual
-            && solver.robustness != Robustness::None
-            && lamps.count() > 3
-        {
-            let limit = CLOSELY * usual;
-            doubted = residual.iter().filter(|r| **r > limit).count() as u64;
-            if doubted > 0 {
-                // Twice: paper's response, which is divided out with the normal so far, is of use
-                // only once shadows no longer bend that normal.
-                let mut w = self.believed(solver, &lamps, usual, &residual, None);
-                for _ in 0..BELIEVED {
-                    g = self.facing(solver, &lamps, Some(&w));
-                    w = self.believed(solver, &lamps, usual, &residual, Some(&g));
-                }
-                g = self.facing(solver, &lamps, Some(&w));
-                weights = Some(w);
-            }
+        self.shown(solver, lamps, &g, residual, None)
+    }
+
+    /// Where photographs contradict each other by more than the `usual` residual.
+    fn solve_doubted(
+        &mut self,
+        solver: &Solver,
+        rows: &Rows<'_>,
+        places: &[usize],
+        y: usize,
+        usual: f32,
+    ) -> Shown {
+        let lamps = self.lamps(solver, rows, places, y);
+        // More than once: paper's response, which is divided out with the normal so far, is of use
+        // only once shadows no longer bend that normal.
+        let mut w = self.believed(solver, &lamps, usual, None);
+        let mut g = self.facing(solver, &lamps, Some(&w));
+        for _ in 0..BELIEVED {
+            w = self.believed(solver, &lamps, usual, Some(&g));
+            g = self.facing(solver, &lamps, Some(&w));
         }
-        let normal = normals(&g);
-        let albedo = self.albedo(solver, &lamps, &normal, weights.as_deref());
+        let residual = [0.0; LANES];
+        self.shown(solver, lamps, &g, residual, Some(&w))
+    }
+
+    fn shown(
+        &mut self,
+        solver: &Solver,
+        lamps: Lamps,
+        g: &Lane3,
+        residual: Lane,
+        w: Option<&[Lane]>,
+    ) -> Shown {
+        let normal = normals(g);
+        let albedo = self.albedo(solver, &lamps, &normal, w);
         if lamps.inverse.is_some() {
             self.lamps = Some(lamps);
         }
@@ -239,18 +295,15 @@ impl Block {
             normal,
             albedo,
             residual,
-            doubted,
         }
     }
 
-    /// Weights of the photographs by what is left over of `g`, or of a first guess; 1 where a
-    /// pixel is not doubted.
+    /// Weights of the photographs by what is left over of `g`, or of a first guess.
     fn believed(
         &mut self,
         solver: &Solver,
         lamps: &Lamps,
         usual: f32,
-        residual: &Lane,
         g: Option<&Lane3>,
     ) -> Vec<Lane> {
         let (g, noise) = match g {
@@ -268,13 +321,9 @@ impl Block {
         let mut w = robust::weights(solver.robustness, lamps, &self.plain, &g, noise);
         for (w, gleaming) in w.iter_mut().zip(&self.gleaming) {
             for lane in 0..LANES {
-                if residual[lane] <= CLOSELY * usual {
-                    w[lane] = 1.0;
-                } else {
-                    // What is mostly gleam says little of what is not.
-                    let share = gleaming[lane] / DOUBTED_GLEAM;
-                    w[lane] /= 1.0 + share * share;
-                }
+                // What is mostly gleam says little of what is not.
+                let share = gleaming[lane] / DOUBTED_GLEAM;
+                w[lane] /= 1.0 + share * share;
             }
         }
         w
@@ -297,9 +346,10 @@ impl Block {
         let mut g = solve(&self.plain);
         for _ in 0..ROUNDS {
             let n = normals(&g);
+            let leaving = Leaving::new(paper, &n);
             for i in 0..lamps.count() {
                 let mu = cosine(&n, &lamps.l[i]);
-                let seen = block::response(paper, &n, &lamps.l[i], &mu, &lamps.fresnel[i]);
+                let seen = block::response(paper, &n, &leaving, lamps, i, &mu);
                 for lane in 0..LANES {
                     let grey = self.grey[i][lane];
                     let gleam = lamps.gain[i][lane] * mu[lane].max(0.0) * seen.gloss[lane];
@@ -310,7 +360,18 @@ impl Block {
                     self.plain[i][lane] = grey * (1.0 - share) / seen.diffuse[lane].max(0.3);
                 }
             }
-            g = solve(&self.plain);
+            let next = solve(&self.plain);
+            let (mut moved, mut length) = (0.0f32, 0.0f32);
+            for c in 0..3 {
+                for lane in 0..LANES {
+                    moved = moved.max((next[c][lane] - g[c][lane]).abs());
+                    length = length.max(next[c][lane].abs());
+                }
+            }
+            g = next;
+            if moved < STILL * length {
+                break;
+            }
         }
         g
     }
@@ -341,15 +402,15 @@ impl Block {
     fn albedo(&self, solver: &Solver, lamps: &Lamps, normal: &Lane3, w: Option<&[Lane]>) -> Lane3 {
         let mut along = [[0.0f32; LANES]; 3];
         let mut square = [0.0f32; LANES];
+        let paper = match &solver.response {
+            Response::Lambert => None,
+            Response::Paper(paper) => Some((paper, Leaving::new(paper, normal))),
+        };
         for i in 0..lamps.count() {
             let mu = cosine(normal, &lamps.l[i]);
-            let seen = match &solver.response {
-                Response::Lambert => None,
-                Response::Paper(paper) => {
-                    let fresnel = &lamps.fresnel[i];
-                    Some(block::response(paper, normal, &lamps.l[i], &mu, fresnel))
-                }
-            };
+            let seen = paper
+                .as_ref()
+                .map(|(paper, leaving)| block::response(paper, normal, leaving, lamps, i, &mu));
             let mut factor = [0.0f32; LANES];
             let mut gleam = [0.0f32; LANES];
             for lane in 0..LANES {
@@ -361,14 +422,16 @@ impl Block {
                     factor[lane] *= seen.diffuse[lane];
                 }
             }
-            let weighted = |lane: usize| factor[lane] * w.map_or(1.0, |w| w[i][lane]);
+            let weights = w.map_or(&ONES, |w| &w[i]);
+            let mut weighted = [0.0f32; LANES];
+            for lane in 0..LANES {
+                weighted[lane] = factor[lane] * weights[lane];
+                square[lane] += weighted[lane] * factor[lane];
+            }
             for (along, colour) in along.iter_mut().zip(&self.colours[i]) {
                 for lane in 0..LANES {
-                    along[lane] += weighted(lane) * (colour[lane] - gleam[lane]);
+                    along[lane] += weighted[lane] * (colour[lane] - gleam[lane]);
                 }
-            }
-            for lane in 0..LANES {
-                square[lane] += weighted(lane) * factor[lane];
             }
         }
         let floor = match &solver.response {
