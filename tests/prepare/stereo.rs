@@ -8,18 +8,28 @@ use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::{Distribution, Normal};
 use recto::{
     colour::{self, delta_e00},
+    maps::{self, ColourEncoding},
     optics::{bsdf::Specimen, medium::MediumId, tier::Tier},
     prepare::{
         capture::Robustness,
-        lights::direction,
-        stereo::{Gain, Paper, Response, Rig, Rows, Solved, Solver, Standing},
+        lights::{direction, lp},
+        relief::{
+            compare::{compare, range},
+            integrate::{Perimeter, Slopes, integrate},
+        },
+        stereo::{Gain, Paper, Response, Rig, Rows, Solved, Solver, Standing, relight},
     },
 };
+
+use super::support::data;
+use crate::test_name;
 
 /// Mean error of normals on matte surfaces, in degrees.
 const MATTE_DEG: f64 = 1.0;
 /// With gloss and cast shadows.
 const GLOSSY_DEG: f64 = 3.0;
+/// RMS of heights over their range, on matte surfaces.
+const HEIGHT: f64 = 0.01;
 /// Mean ΔE00 of albedo.
 const ALBEDO: f64 = 1.0;
 
@@ -168,6 +178,17 @@ fn error_deg(solved: &Solved) -> f64 {
     each.sum::<f64>() / solved.normal.len() as f64
 }
 
+/// RMS of integrated heights over their range.
+fn height_error(solved: &Solved) -> f64 {
+    let found = integrate(&Slopes::of_normals(&solved.normal, SIDE), Perimeter::Free);
+    let place = |i: usize| [(i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5];
+    let truth = (0..SIDE * SIDE).map(|i| height(place(i)[0], place(i)[1]));
+    let truth: Vec<f64> = truth.collect();
+    let off = compare(&found, &truth, SIDE, 1.0, &[]).expect("a comparison");
+    let [low, high] = range(&truth, [0.0, 1.0]).expect("heights");
+    off.whole.sigma / (high - low)
+}
+
 /// Mean ΔE00 of albedo.
 fn albedo_error(solved: &Solved) -> f64 {
     let each = (0..SIDE * SIDE).map(|i| {
@@ -199,6 +220,12 @@ fn a_matte_surface_is_found_under_any_number_of_lamps() {
         let count = lamps.len();
         let solved = Scene::matte(lamps).solve(Response::Lambert, Robustness::Robust);
         let (normals, colours) = (error_deg(&solved), albedo_error(&solved));
+        let heights = height_error(&solved);
+        eprintln!(
+            "matte, {count} lamps: heights {:.3} % of their range",
+            100.0 * heights
+        );
+        assert!(heights < HEIGHT, "{count}: {heights}");
         eprintln!("matte, {count} lamps: {normals:.3}°, ΔE00 {colours:.3}");
         assert!(
             normals < MATTE_DEG && colours < ALBEDO,
@@ -282,6 +309,79 @@ fn highlights_and_cast_shadows_are_left_out() {
         // Photographs that are all believed show that there is something to leave out.
         assert!(plain > 1.5 * robust, "{count}: {robust}° {plain}°");
     }
+}
+
+/// Neighbours of a lamp.
+const NEAREST: usize = 4;
+
+/// Many lamps, low ones among them, on a real face that shines and shades itself.
+#[test]
+fn a_real_face_under_240_lamps_is_relit() {
+    let Some(root) = data(test_name!(), "rti_lion") else {
+        return;
+    };
+    let text = std::fs::read_to_string(root.join("dirs.lp")).expect("text");
+    let lamps = lp::read(&text).expect("lamps");
+    let mut width = 0;
+    let photographs: Vec<[Vec<f32>; 3]> = lamps
+        .iter()
+        .map(|lamp| {
+            let mut planes = [Vec::new(), Vec::new(), Vec::new()];
+            maps::for_each_colour_row(&lamp.beside(&root), ColourEncoding::Srgb, |_, row| {
+                width = row.len();
+                for (c, plane) in planes.iter_mut().enumerate() {
+                    plane.extend(row.iter().map(|p| p[c]));
+                }
+            })
+            .expect("a picture");
+            planes
+        })
+        .collect();
+    let (mut relit, mut dull, mut won) = (0.0, 0.0, 0);
+    let left_out: Vec<usize> = (10..240).step_by(23).collect();
+    for &out in &left_out {
+        let kept: Vec<usize> = (0..lamps.len()).filter(|i| *i != out).collect();
+        let planes: Vec<_> = kept.iter().map(|&i| photographs[i].clone()).collect();
+        let solver = Solver {
+            rig: Rig {
+                gain: Gain::Relative(vec![1.0; kept.len()]),
+                ..Rig::far(kept.iter().map(|&i| lamps[i].direction).collect())
+            },
+            response: Response::Lambert,
+            robustness: Robustness::Robust,
+        };
+        let rows = Rows {
+            planes: &planes,
+            width,
+            top: 0,
+        };
+        let solved = solver.solve(rows);
+        let l = lamps[out].direction;
+        let shown = relight(&solved, &solver.rig, rows, l, 1.0, NEAREST);
+        let mut near: Vec<usize> = (0..kept.len()).collect();
+        near.sort_by(|a, b| {
+            let cosine = |i: &usize| lamps[kept[*i]].direction.dot(l);
+            cosine(b).total_cmp(&cosine(a))
+        });
+        let (mut own, mut mean) = (0.0, 0.0);
+        for c in 0..3 {
+            for (p, shown) in shown[c].iter().enumerate() {
+                let truth = photographs[out][c][p];
+                let around: f32 = near[..NEAREST].iter().map(|&i| planes[i][c][p]).sum();
+                own += f64::from(shown - truth).powi(2);
+                mean += f64::from(around / NEAREST as f32 - truth).powi(2);
+            }
+        }
+        relit += own;
+        dull += mean;
+        won += usize::from(own < mean);
+    }
+    eprintln!(
+        "lion: relit RMS over that of its neighbours' mean {:.3}, better in {won} of {}",
+        (relit / dull).sqrt(),
+        left_out.len()
+    );
+    assert!(relit < dull && won > left_out.len() / 2, "{won}");
 }
 
 #[test]

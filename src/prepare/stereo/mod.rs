@@ -7,12 +7,14 @@
 //! | paper's response instead of Lambert's | [`response`] |
 //! | least squares of many pixels at once | `block` |
 //! | shadows and highlights | `robust` |
+//! | photographs that were not taken | [`relight()`] |
 //!
 //! Photographs come as linear planes, in bands of rows; a band is solved by all processors, row by
 //! row, in one pass over its values. Values are f32, as photographs have 16 bits at most; what is
 //! summed over pixels is f64.
 
 mod block;
+mod relight;
 pub mod response;
 pub mod rig;
 mod robust;
@@ -21,6 +23,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::capture::Robustness;
+pub use relight::relight;
 pub use response::{Paper, Response};
 pub use rig::{Gain, Rig, Standing};
 
@@ -47,6 +50,9 @@ const CLOSELY: f32 = 4.0;
 /// The usual residual is within these shares of a value, whatever the sheet: a photograph's
 /// rounding, and a sheet that is all highlights.
 const RESIDUALS: [f32; 2] = [0.002, 0.05];
+/// What a residual is a share of, at least: in the dark a photograph's rounding is no
+/// contradiction.
+const DARK: f32 = 0.02;
 /// Every how manieth block is asked for the usual residual.
 const SAMPLED: usize = 23;
 
@@ -109,18 +115,6 @@ impl Solver {
             .map(|(y, ((((normal, red), green), blue), residual))| {
                 let mut block = Block::new(self, rows.planes.len());
                 let mut doubted = Vec::new();
-                let mut keep = |places: &[usize], shown: &Shown, first: bool| {
-                    for (lane, &x) in places.iter().enumerate() {
-                        normal[x] = [0, 1, 2].map(|c| shown.normal[c][lane]);
-                        red[x] = shown.albedo[0][lane];
-                        green[x] = shown.albedo[1][lane];
-                        blue[x] = shown.albedo[2][lane];
-                        // Of the plain solution: it tells how well the photographs agree.
-                        if first {
-                            residual[x] = shown.residual[lane];
-                        }
-                    }
-                };
                 let limit = CLOSELY * usual;
                 let doubts = self.robustness != Robustness::None && self.rig.count() > 3;
                 for x in (0..width).step_by(LANES) {
@@ -128,7 +122,15 @@ impl Solver {
                     let places = &places[..LANES.min(width - x)];
                     block.read(&rows, places, y);
                     let shown = block.solve(self, &rows, places, y);
-                    keep(places, &shown, true);
+                    let lanes = places.len();
+                    for (lane, normal) in normal[x..x + lanes].iter_mut().enumerate() {
+                        *normal = [0, 1, 2].map(|c| shown.normal[c][lane]);
+                    }
+                    red[x..x + lanes].copy_from_slice(&shown.albedo[0][..lanes]);
+                    green[x..x + lanes].copy_from_slice(&shown.albedo[1][..lanes]);
+                    blue[x..x + lanes].copy_from_slice(&shown.albedo[2][..lanes]);
+                    // Of the plain solution: it tells how well the photographs agree.
+                    residual[x..x + lanes].copy_from_slice(&shown.residual[..lanes]);
                     if doubts {
                         let lanes = shown.residual.iter().zip(places);
                         doubted.extend(lanes.filter(|(r, _)| **r > limit).map(|(_, x)| *x));
@@ -138,7 +140,12 @@ impl Solver {
                 for places in doubted.chunks(LANES) {
                     block.read(&rows, places, y);
                     let shown = block.solve_doubted(self, &rows, places, y, usual);
-                    keep(places, &shown, false);
+                    for (lane, &x) in places.iter().enumerate() {
+                        normal[x] = [0, 1, 2].map(|c| shown.normal[c][lane]);
+                        red[x] = shown.albedo[0][lane];
+                        green[x] = shown.albedo[1][lane];
+                        blue[x] = shown.albedo[2][lane];
+                    }
                 }
                 doubted.len() as u64
             })
@@ -392,7 +399,7 @@ impl Block {
             }
         }
         for lane in 0..LANES {
-            let mean = (mean[lane] / lamps.count() as f32).max(1e-6);
+            let mean = (mean[lane] / lamps.count() as f32).max(DARK);
             residual[lane] = (residual[lane] / spare as f32).sqrt() / mean;
         }
         residual
