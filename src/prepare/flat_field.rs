@@ -113,7 +113,7 @@ impl FlatField {
                 .enumerate()
                 .min_by(|a, b| a.1[c].total_cmp(&b.1[c]));
             if let Some((i, mean)) = darkest
-                && !(mean[c] >= DARKEST * brightest && mean[c] > 0.0)
+                && (mean[c].is_nan() || mean[c] < DARKEST * brightest || mean[c] <= 0.0)
             {
                 return Err(FlatFieldError::Dark {
                     path: path.display().to_string(),

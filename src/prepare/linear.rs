@@ -1,5 +1,10 @@
 //! Small linear systems, in f64.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
 /// Solves the symmetric positive system `a x = b` of `b.len()` unknowns for each right side in
 /// turn, by Cholesky's factors. `None` where it is singular to rounding.
 pub fn solve_positive(a: &[Vec<f64>], right: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
@@ -11,8 +16,7 @@ pub fn solve_positive(a: &[Vec<f64>], right: &[Vec<f64>]) -> Option<Vec<Vec<f64>
             let known: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
             let rest = a[i][j] - known;
             if i == j {
-                // NaN is not positive either.
-                if !(rest > scale * 1e-14) {
+                if rest.is_nan() || rest <= scale * 1e-14 {
                     return None;
                 }
                 l[i][i] = rest.sqrt();

@@ -6,7 +6,7 @@ use super::{
     PrepareError,
     capture::{Capture, Light, Places},
     colour::chart::COLORCHECKER24,
-    run::{Report, SideMaps},
+    run::Report,
 };
 use crate::{
     manifest::SideName,
@@ -32,28 +32,21 @@ fn preview_name(side: SideName, kind: &str) -> String {
     format!(".preview-{side}-{kind}.png")
 }
 
-/// Writes small pictures of a side's maps into `folder`.
-pub(super) fn previews(maps: &SideMaps, folder: &Path) -> Result<(), PrepareError> {
-    let [width, height] = maps.size;
+/// Writes a small picture of a map of this size into `folder`.
+pub(super) fn preview(
+    side: SideName,
+    kind: &str,
+    [width, height]: [usize; 2],
+    at: &dyn Fn(usize) -> [u8; 3],
+    folder: &Path,
+) -> Result<(), PrepareError> {
     let step = width.max(height).div_ceil(PREVIEW_PX).max(1);
     let [w, h] = [width.div_ceil(step), height.div_ceil(step)];
-    let [low, high] = maps.report.shape_um;
-    let scale = 255.0 / (high - low).max(1e-9);
-    let save = |kind: &str, at: &dyn Fn(usize) -> [u8; 3]| {
-        let pixels: Vec<[u8; 3]> = (0..w * h)
-            .map(|i| at(i / w * step * width + i % w * step))
-            .collect();
-        let path = folder.join(preview_name(maps.side, kind));
-        save_png_rgb8(&path, w as u32, h as u32, &pixels, None)
-    };
-    // Casts saturate.
-    save("albedo", &|i| maps.albedo[i].map(|v| (v >> 8) as u8))?;
-    save("normal", &|i| {
-        maps.normal[i].map(|v| ((v * 0.5 + 0.5) * 255.0).round() as u8)
-    })?;
-    save("shape", &|i| {
-        [((maps.shape_um[i] - low) * scale).round() as u8; 3]
-    })?;
+    let pixels: Vec<[u8; 3]> = (0..w * h)
+        .map(|i| at(i / w * step * width + i % w * step))
+        .collect();
+    let path = folder.join(preview_name(side, kind));
+    save_png_rgb8(&path, w as u32, h as u32, &pixels, None)?;
     Ok(())
 }
 
@@ -69,7 +62,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// Writes the page into `folder`, with the pictures that [`previews`] left there.
+/// Writes the page into `folder`, with the pictures that [`preview`] left there.
 pub(super) fn html(capture: &Capture, report: &Report, folder: &Path) -> Result<(), PrepareError> {
     let page = page(capture, report, folder)?;
     write_whole(&folder.join(REPORT), |file| file.write_all(page.as_bytes()))?;

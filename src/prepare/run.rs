@@ -22,7 +22,7 @@ use super::{
     },
     report,
     stereo::{Gain, Response, Rig, Rows, Solver, Standing},
-    write,
+    write::{self, SideFiles, SideText},
 };
 use crate::{
     colour::srgb_encode,
@@ -108,21 +108,6 @@ pub struct SideReport {
     pub grain_um: [f64; 2],
 }
 
-/// A side's maps before they are written.
-pub(super) struct SideMaps {
-    pub side: SideName,
-    pub size: [usize; 2],
-    /// sRGB-encoded.
-    pub albedo: Vec<[u16; 3]>,
-    /// Of grain and strokes.
-    pub normal: Vec<[f32; 3]>,
-    /// Of grain and strokes, in µm.
-    pub grain_um: Vec<f64>,
-    /// Of the shape at large, in µm.
-    pub shape_um: Vec<f64>,
-    pub report: SideReport,
-}
-
 /// Makes maps of a capture, a manifest that shows them and a report, in the folder `out`, which
 /// may be yet to be made. `progress` is told of each step.
 ///
@@ -188,12 +173,11 @@ fn staged(
         let share = 0.9 / shots_count(&both);
         let mut tell = |step, done: f64| tell(step, from + share * done);
         let rig = find::rig(capture, shots, &lamps, scratch)?;
-        let maps = prepare_side(capture, *side, shots, &rig, correction, scratch, &mut tell)?;
+        let (text, side) =
+            prepare_side(capture, *side, shots, &rig, correction, scratch, &mut tell)?;
         found_rig.get_or_insert(rig);
-        tell("writing maps", 0.9);
-        sides.push(write::side(&maps, capture, scratch)?);
-        reports.push(maps.report.clone());
-        report::previews(&maps, scratch)?;
+        sides.push(text);
+        reports.push(side);
     }
     let report = Report {
         manifest: out.join(crate::manifest::MANIFEST),
@@ -235,7 +219,8 @@ fn lamps_found(lamps: &FoundLamps, rig: Option<&Rig>) -> Vec<LampFound> {
     found.collect()
 }
 
-/// Solves the photographs of one side, band by band.
+/// Solves the photographs of one side, band by band, and writes its maps, each as soon as nothing
+/// else needs it: of a large sheet, not all of them are in memory at once.
 fn prepare_side(
     capture: &Capture,
     side: SideName,
@@ -244,7 +229,7 @@ fn prepare_side(
     correction: Option<&Correction>,
     scratch: &Path,
     tell: &mut dyn FnMut(&'static str, f64),
-) -> Result<SideMaps, PrepareError> {
+) -> Result<(SideText, SideReport), PrepareError> {
     tell("reading grey cards", 0.0);
     let fields = find::flat_fields(capture, shots, scratch)?;
     let solver = Solver {
@@ -299,29 +284,34 @@ fn prepare_side(
     let assumed_exposure = (!measured).then(|| exposure(&albedo[1]));
     let encoded = encoded(&albedo, assumed_exposure.unwrap_or(1.0));
     drop(albedo);
-    tell("relief", 0.65);
+    tell("writing maps", 0.6);
+    let maps = SideFiles::new(side, size, capture, scratch)?;
+    maps.albedo(&encoded)?;
+    drop(encoded);
+    tell("relief", 0.7);
     let sigma_px = (capture.relief.split_mm / capture.mm_per_px).max(0.5);
-    let Split { large, small } = split(&normals, size[0], sigma_px, capture.relief.filter);
-    drop(normals);
+    let Split { large, small } = split(normals, size[0], sigma_px, capture.relief.filter);
     let um_per_px = capture.mm_per_px * 1000.0;
-    let heights = |normals: &[[f32; 3]]| {
-        let slopes = Slopes::of_normals(normals, size[0]);
-        let mut heights = integrate(&slopes, Perimeter::Free);
-        remove_plane(&mut heights, size[0]);
-        heights.iter_mut().for_each(|h| *h *= um_per_px);
-        heights
-    };
-    let mut shape_um = heights(&large);
-    drop(large);
     let extent = |heights: &[f64]| range(heights, [0.0, 1.0]).unwrap_or_default();
+    let mut shape = heights(&large.vectors, large.width, um_per_px * large.step as f64);
     if let Some(known) = capture.relief.known_range_um {
-        let [low, high] = extent(&shape_um);
+        let [low, high] = extent(&shape);
         if high > low {
-            shape_um.iter_mut().for_each(|h| *h *= known / (high - low));
+            shape.iter_mut().for_each(|h| *h *= known / (high - low));
         }
     }
+    let shape_um = extent(&shape);
+    let surface = maps.shape(&shape, large.width)?;
+    drop((shape, large));
+    maps.normal(&small)?;
     tell("relief", 0.8);
-    let grain_um = heights(&small);
+    let slopes = Slopes::of_normals(&small, size[0]);
+    drop(small);
+    let grain = heights_of(&slopes, um_per_px);
+    drop(slopes);
+    let grain_um = extent(&grain);
+    tell("writing maps", 0.9);
+    let text = maps.grain(&grain, surface)?;
     let report = SideReport {
         side,
         size,
@@ -331,18 +321,22 @@ fn prepare_side(
             _ => doubted as f64 / count.max(1) as f64,
         },
         assumed_exposure,
-        shape_um: extent(&shape_um),
-        grain_um: extent(&grain_um),
-    };
-    Ok(SideMaps {
-        side,
-        size,
-        albedo: encoded,
-        normal: small,
-        grain_um,
         shape_um,
-        report,
-    })
+        grain_um,
+    };
+    Ok((text, report))
+}
+
+/// Heights in µm of unit normals, their mean plane taken out.
+fn heights(normals: &[[f32; 3]], width: usize, um_per_px: f64) -> Vec<f64> {
+    heights_of(&Slopes::of_normals(normals, width), um_per_px)
+}
+
+fn heights_of(slopes: &Slopes, um_per_px: f64) -> Vec<f64> {
+    let mut heights = integrate(slopes, Perimeter::Free);
+    remove_plane(&mut heights, slopes.width);
+    heights.iter_mut().for_each(|h| *h *= um_per_px);
+    heights
 }
 
 /// What brings the brightest paper to a white sheet's albedo, where nothing says how bright the

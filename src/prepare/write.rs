@@ -1,14 +1,14 @@
 //! Maps and manifest of what was prepared.
 
-use std::{fs, io::Write as _, path::Path};
+use std::{
+    fs,
+    io::Write as _,
+    path::{Path, PathBuf},
+};
 
 use rayon::prelude::*;
 
-use super::{
-    PrepareError,
-    capture::Capture,
-    run::{Report, SideMaps},
-};
+use super::{PrepareError, capture::Capture, report, run::Report};
 use crate::{
     manifest::{MANIFEST, SideName, check_shape},
     maps::encode::{save_png_grey16, save_png_rgb16, write_whole},
@@ -16,8 +16,6 @@ use crate::{
 
 /// The folder of maps, within the exhibit's.
 const MAPS: &str = "maps";
-/// The longer side of the map of the sheet's shape: it has nothing smaller than the split.
-const SHAPE_PX: usize = 1024;
 
 /// Lines of a manifest about one side.
 pub(super) struct SideText {
@@ -35,62 +33,127 @@ fn word(side: SideName) -> &'static str {
     }
 }
 
-/// Writes a side's maps below `folder`.
-pub(super) fn side(
-    maps: &SideMaps,
-    capture: &Capture,
-    folder: &Path,
-) -> Result<SideText, PrepareError> {
-    let name = word(maps.side);
-    let within = folder.join(MAPS).join(name);
-    fs::create_dir_all(&within).map_err(|reason| PrepareError::Folder {
-        path: within.clone(),
-        reason,
-    })?;
-    let [width, height] = maps.size;
-    let [w, h] = maps.size.map(|v| v as u32);
-    let dpi = Some(25.4 / capture.mm_per_px);
-    save_png_rgb16(&within.join("albedo.png"), w, h, &maps.albedo, dpi)?;
-    let normals: Vec<[u16; 3]> = maps
-        .normal
-        .par_iter()
-        .map(|n| n.map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0).round() as u16))
-        .collect();
-    save_png_rgb16(&within.join("normal.png"), w, h, &normals, dpi)?;
-    drop(normals);
-    let grain = Levels::new(&maps.grain_um);
-    save_png_grey16(&within.join("height.png"), w, h, &grain.values, dpi)?;
-    let text = format!(
-        "albedo = {{ file = \"{MAPS}/{name}/albedo.png\", encoding = \"srgb\" }}\n\
-         normal = {{ file = \"{MAPS}/{name}/normal.png\", y = \"up\" }}\n\
-         height = {{ file = \"{MAPS}/{name}/height.png\", range_um = [{}, {}] }}\n\
-         source = \"measured\"\n",
-        grain.range[0], grain.range[1]
-    );
-    let mut surface = String::new();
-    if maps.side == SideName::Recto {
-        let step = width.max(height).div_ceil(SHAPE_PX).max(1);
-        let (small, [w, h]) = means(&maps.shape_um, width, step);
-        let shape = Levels::new(&small);
-        save_png_grey16(
-            &folder.join(MAPS).join("shape.png"),
-            w as u32,
-            h as u32,
-            &shape.values,
-            None,
+/// The files of a side's maps.
+pub(super) struct SideFiles<'s> {
+    side: SideName,
+    size: [usize; 2],
+    dpi: f64,
+    /// The exhibit's.
+    folder: &'s Path,
+    within: PathBuf,
+}
+
+impl<'s> SideFiles<'s> {
+    /// Makes the folder of a side's maps below `folder`.
+    pub fn new(
+        side: SideName,
+        size: [usize; 2],
+        capture: &Capture,
+        folder: &'s Path,
+    ) -> Result<Self, PrepareError> {
+        let within = folder.join(MAPS).join(word(side));
+        fs::create_dir_all(&within).map_err(|reason| PrepareError::Folder {
+            path: within.clone(),
+            reason,
+        })?;
+        Ok(Self {
+            side,
+            size,
+            dpi: 25.4 / capture.mm_per_px,
+            folder,
+            within,
+        })
+    }
+
+    fn preview(
+        &self,
+        kind: &str,
+        width: usize,
+        at: &dyn Fn(usize) -> [u8; 3],
+        count: usize,
+    ) -> Result<(), PrepareError> {
+        report::preview(
+            self.side,
+            kind,
+            [width, count / width.max(1)],
+            at,
+            self.folder,
+        )
+    }
+
+    /// Writes sRGB-encoded albedo.
+    pub fn albedo(&self, albedo: &[[u16; 3]]) -> Result<(), PrepareError> {
+        let [w, h] = self.size.map(|v| v as u32);
+        save_png_rgb16(
+            &self.within.join("albedo.png"),
+            w,
+            h,
+            albedo,
+            Some(self.dpi),
         )?;
-        surface = format!(
+        let at = |i: usize| albedo[i].map(|v| (v >> 8) as u8);
+        self.preview("albedo", self.size[0], &at, albedo.len())
+    }
+
+    /// Writes unit normals of grain and strokes.
+    pub fn normal(&self, normals: &[[f32; 3]]) -> Result<(), PrepareError> {
+        let [w, h] = self.size.map(|v| v as u32);
+        let encoded: Vec<[u16; 3]> = normals
+            .par_iter()
+            .map(|n| n.map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0).round() as u16))
+            .collect();
+        save_png_rgb16(
+            &self.within.join("normal.png"),
+            w,
+            h,
+            &encoded,
+            Some(self.dpi),
+        )?;
+        let at = |i: usize| encoded[i].map(|v| (v >> 8) as u8);
+        self.preview("normal", self.size[0], &at, encoded.len())
+    }
+
+    /// Writes the shape at large in µm, and gives the lines of a manifest about it; the recto's
+    /// alone is the sheet's.
+    pub fn shape(&self, um: &[f64], width: usize) -> Result<String, PrepareError> {
+        let levels = Levels::new(um);
+        let at = |i: usize| [(levels.values[i] >> 8) as u8; 3];
+        self.preview("shape", width, &at, um.len())?;
+        if self.side == SideName::Verso {
+            return Ok(String::new());
+        }
+        let (w, h) = (width as u32, (um.len() / width.max(1)) as u32);
+        let path = self.folder.join(MAPS).join("shape.png");
+        save_png_grey16(&path, w, h, &levels.values, None)?;
+        Ok(format!(
             "[drawing.surface]\n\
              height = {{ file = \"{MAPS}/shape.png\", range_um = [{}, {}], source = \"measured\" }}\n",
-            shape.range[0], shape.range[1]
-        );
+            levels.range[0], levels.range[1]
+        ))
     }
-    Ok(SideText {
-        side: maps.side,
-        text,
-        surface,
-        size: maps.size,
-    })
+
+    /// Writes heights of grain and strokes in µm, the last of the maps, and gives the lines of a
+    /// manifest about the side.
+    pub fn grain(self, um: &[f64], surface: String) -> Result<SideText, PrepareError> {
+        let [w, h] = self.size.map(|v| v as u32);
+        let levels = Levels::new(um);
+        let path = self.within.join("height.png");
+        save_png_grey16(&path, w, h, &levels.values, Some(self.dpi))?;
+        let name = word(self.side);
+        let text = format!(
+            "albedo = {{ file = \"{MAPS}/{name}/albedo.png\", encoding = \"srgb\" }}\n\
+             normal = {{ file = \"{MAPS}/{name}/normal.png\", y = \"up\" }}\n\
+             height = {{ file = \"{MAPS}/{name}/height.png\", range_um = [{}, {}] }}\n\
+             source = \"measured\"\n",
+            levels.range[0], levels.range[1]
+        );
+        Ok(SideText {
+            side: self.side,
+            text,
+            surface,
+            size: self.size,
+        })
+    }
 }
 
 /// Heights as 16-bit values.
@@ -112,23 +175,6 @@ impl Levels {
             range: [low, high],
         }
     }
-}
-
-/// Means of squares of `step` pixels; those at the right and lower edge may be smaller.
-fn means(values: &[f64], width: usize, step: usize) -> (Vec<f64>, [usize; 2]) {
-    let height = values.len() / width;
-    let size = [width.div_ceil(step), height.div_ceil(step)];
-    let mean = |i: usize| {
-        let (left, top) = (i % size[0] * step, i / size[0] * step);
-        let rows = top..(top + step).min(height);
-        let columns = left..(left + step).min(width);
-        let count = rows.len() * columns.len();
-        let sum: f64 = rows
-            .flat_map(|y| &values[y * width + columns.start..y * width + columns.end])
-            .sum();
-        sum / count as f64
-    };
-    ((0..size[0] * size[1]).map(mean).collect(), size)
 }
 
 /// Writes the manifest that shows the maps.

@@ -251,12 +251,13 @@ fn long_waves_and_short_ones_are_told_apart() {
     let (width, height) = (300, 200);
     let (both, long) = waves(width, height);
     for filter in [Filter::Gaussian, Filter::Bilateral] {
-        let parts = split(&both, width, 8.0, filter);
+        let parts = split(both.clone(), width, 8.0, filter);
+        let large = parts.large.sampled([width, height]);
         let mut worst = [0.0f32; 2];
         for y in 30..170 {
             for x in 30..270 {
                 let i = y * width + x;
-                worst[0] = worst[0].max((parts.large[i][0] - long[i][0]).abs());
+                worst[0] = worst[0].max((large[i][0] - long[i][0]).abs());
                 worst[1] = worst[1].max(parts.small[i][0].abs());
             }
         }
@@ -266,6 +267,28 @@ fn long_waves_and_short_ones_are_told_apart() {
         let share = parts.small.iter().map(|n| n[1].abs()).fold(0.0, f32::max);
         assert!(share > 0.08, "{share}");
     }
+}
+
+/// What a smaller picture may cost the split.
+const SMALLER: f32 = 2e-3;
+
+#[test]
+fn wide_filters_on_a_smaller_picture_are_those_on_the_whole() {
+    let (width, height) = (401, 283);
+    let (both, _) = waves(width, height);
+    let whole = gaussian(&both, width, 33.0);
+    let found = split(both, width, 33.0, Filter::Gaussian).large;
+    assert!(found.step > 1);
+    let found = found.sampled([width, height]);
+    // Beyond the edge one goes on as the last pixel, and the other as the last square.
+    let inner = |i: &usize| (100..300).contains(&(i % width)) && (100..183).contains(&(i / width));
+    let off = |c: usize| {
+        let each = (0..found.len()).filter(inner);
+        each.map(|i| (found[i][c] - whole[i][c]).abs())
+            .fold(0.0, f32::max)
+    };
+    let worst = [off(0), off(1)];
+    assert!(worst.iter().all(|off| *off < SMALLER), "{worst:?}");
 }
 
 #[test]
@@ -301,7 +324,8 @@ fn a_crease_is_kept_by_the_bilateral_filter() {
         .map(|i| [side(i % width), 0.0, (1.0f32 - 0.35 * 0.35).sqrt()])
         .collect();
     let error = |filter| {
-        let large = split(&normals, width, 12.0, filter).large;
+        let parts = split(normals.clone(), width, 12.0, filter);
+        let large = parts.large.sampled([width, height]);
         let each = large.iter().zip(&normals).map(|(a, b)| (a[0] - b[0]).abs());
         each.sum::<f32>() / normals.len() as f32
     };

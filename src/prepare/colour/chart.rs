@@ -166,7 +166,7 @@ fn perspective(corners: [DVec2; 4]) -> Option<DMat3> {
     let (to_c, from_d, sum) = (b - c, d - c, a - b + c - d);
     let area = to_c.perp_dot(from_d);
     let size = to_c.length() * from_d.length();
-    if !(area.abs() > 1e-3 * size) {
+    if area.is_nan() || area.abs() <= 1e-3 * size {
         return None;
     }
     let g = sum.perp_dot(from_d) / area;

@@ -87,7 +87,7 @@ pub fn highlight(
     };
     let value = |(x, y): (usize, usize)| luma[y * width + x];
     let brightest = on_ball().map(value).fold(0.0, f32::max);
-    if !(brightest > 0.0 && brightest.is_finite()) {
+    if brightest <= 0.0 || !brightest.is_finite() {
         return Err(NoHighlight::None);
     }
     let mut count = 0;

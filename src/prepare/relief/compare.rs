@@ -1,5 +1,10 @@
 //! Surfaces of one sheet in comparison, and planes taken out of them.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
 use crate::prepare::linear::solve_positive;
 
 /// Mean and standard deviation of a difference.

@@ -4,6 +4,11 @@
 //! b is the shape at large (macro), and m = n − (b − f) the rest (meso), as Apollonio, Foschi,
 //! Gaiani & Garagnani 2021 split them, but in floats.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
 use rayon::prelude::*;
 
 use crate::prepare::capture::Filter;
@@ -14,31 +19,137 @@ const BOXES: usize = 4;
 const CREASE: f32 = 0.15;
 /// What the bilateral filter looks at, in standard deviations.
 const REACH: f32 = 2.0;
-/// Its standard deviation in pixels of the smaller picture that it works on.
-const COARSE: f32 = 4.0;
+/// The standard deviations of both filters in pixels of the smaller picture that they work on, at
+/// least: between its pixels, what a Gaussian leaves is linear to 0.2 %.
+const COARSE: [f64; 2] = [8.0, 4.0];
 
 /// Normals split by scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
-    /// Unit normals of the shape at large.
-    pub large: Vec<[f32; 3]>,
+    /// Of the shape at large.
+    pub large: Coarse,
     /// Unit normals of what is smaller, upright where there is nothing.
     pub small: Vec<[f32; 3]>,
 }
 
+/// Vectors that change slowly, for squares of pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coarse {
+    pub vectors: Vec<[f32; 3]>,
+    /// How many vectors are in a row.
+    pub width: usize,
+    /// Pixels along a side of a square; those at the right and lower edge may be cut.
+    pub step: usize,
+}
+
+impl Coarse {
+    /// Means over squares of `step` pixels.
+    fn new(vectors: &[[f32; 3]], width: usize, step: usize) -> Self {
+        let height = vectors.len() / width;
+        let (w, h) = (width.div_ceil(step), height.div_ceil(step));
+        let mean = |i: usize| {
+            let (left, top) = (i % w * step, i / w * step);
+            let rows = top..(top + step).min(height);
+            let columns = left..(left + step).min(width);
+            let mut sum = [0.0f32; 3];
+            for y in rows.clone() {
+                for v in &vectors[y * width + columns.start..y * width + columns.end] {
+                    for (sum, v) in sum.iter_mut().zip(v) {
+                        *sum += v;
+                    }
+                }
+            }
+            let count = (rows.len() * columns.len()) as f32;
+            sum.map(|sum| sum / count)
+        };
+        Self {
+            vectors: (0..w * h).into_par_iter().map(mean).collect(),
+            width: w,
+            step,
+        }
+    }
+
+    /// Calls `each` with the vectors of a row of `width` pixels, bilinear between the squares'
+    /// middles.
+    fn row(&self, y: usize, width: usize, mut each: impl FnMut(usize, [f32; 3])) {
+        let height = self.vectors.len() / self.width;
+        let between = |at: usize, cells: usize| {
+            let place = (at as f32 + 0.5) / self.step as f32 - 0.5;
+            let place = place.clamp(0.0, (cells - 1) as f32);
+            let first = (place as usize).min(cells.saturating_sub(2));
+            (first, (first + 1).min(cells - 1), place - first as f32)
+        };
+        let (above, below, v) = between(y, height);
+        let at = |row: usize, x: usize| self.vectors[row * self.width + x];
+        for x in 0..width {
+            let (left, right, u) = between(x, self.width);
+            let corners = [
+                at(above, left),
+                at(above, right),
+                at(below, left),
+                at(below, right),
+            ];
+            each(
+                x,
+                [0, 1, 2].map(|c| {
+                    let top = corners[0][c] * (1.0 - u) + corners[1][c] * u;
+                    let bottom = corners[2][c] * (1.0 - u) + corners[3][c] * u;
+                    top * (1.0 - v) + bottom * v
+                }),
+            );
+        }
+    }
+
+    /// A vector for each pixel of a picture of this size.
+    pub fn sampled(&self, [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
+        let mut all = vec![[0.0; 3]; width * height];
+        if width > 0 {
+            all.par_chunks_mut(width)
+                .enumerate()
+                .for_each(|(y, row)| self.row(y, width, |x, v| row[x] = v));
+        }
+        all
+    }
+}
+
 /// Splits unit normals at a standard deviation of `sigma_px` pixels (> 0).
-pub fn split(normals: &[[f32; 3]], width: usize, sigma_px: f64, filter: Filter) -> Split {
-    let smooth = match filter {
-        Filter::Gaussian => gaussian(normals, width, sigma_px),
-        Filter::Bilateral => bilateral(normals, width, sigma_px),
+pub fn split(mut normals: Vec<[f32; 3]>, width: usize, sigma_px: f64, filter: Filter) -> Split {
+    if width == 0 || normals.is_empty() {
+        let large = Coarse {
+            vectors: Vec::new(),
+            width: 0,
+            step: 1,
+        };
+        return Split {
+            large,
+            small: normals,
+        };
+    }
+    let coarse = COARSE[usize::from(filter == Filter::Bilateral)];
+    let step = ((sigma_px / coarse) as usize).max(1);
+    let mut large = Coarse::new(&normals, width, step);
+    let sigma = sigma_px / step as f64;
+    large.vectors = match filter {
+        // The means have smoothed by their own width already.
+        Filter::Gaussian => {
+            let own = if step > 1 { 1.0 / 12.0 } else { 0.0 };
+            gaussian(&large.vectors, large.width, (sigma * sigma - own).sqrt())
+        }
+        Filter::Bilateral => bilateral(&large.vectors, large.width, sigma as f32),
     };
-    let both = normals.par_iter().zip(&smooth);
-    let small = both
-        .map(|(n, b)| unit([n[0] - b[0], n[1] - b[1], n[2] - (b[2] - 1.0)]))
-        .collect();
+    normals
+        .par_chunks_mut(width)
+        .enumerate()
+        .for_each(|(y, row)| {
+            large.row(y, width, |x, b| {
+                let n = row[x];
+                row[x] = unit([n[0] - b[0], n[1] - b[1], n[2] - (b[2] - 1.0)]);
+            });
+        });
+    large.vectors.par_iter_mut().for_each(|v| *v = unit(*v));
     Split {
-        large: smooth.into_par_iter().map(unit).collect(),
-        small,
+        large,
+        small: normals,
     }
 }
 
@@ -130,39 +241,19 @@ fn transposed(picture: &[[f32; 3]], width: usize) -> Vec<[f32; 3]> {
     turned
 }
 
-/// Vectors smoothed among those alike (Tomasi & Manduchi 1998), on a smaller picture of their
-/// means.
-fn bilateral(normals: &[[f32; 3]], width: usize, sigma_px: f64) -> Vec<[f32; 3]> {
-    if width == 0 || normals.is_empty() {
-        return Vec::new();
-    }
-    let height = normals.len() / width;
-    let step = ((sigma_px as f32 / COARSE) as usize).max(1);
-    let (w, h) = (width.div_ceil(step), height.div_ceil(step));
-    let mean = |i: usize| {
-        let (left, top) = (i % w * step, i / w * step);
-        let mut sum = [0.0f32; 3];
-        for y in top..(top + step).min(height) {
-            for n in &normals[y * width + left..y * width + (left + step).min(width)] {
-                for (sum, n) in sum.iter_mut().zip(n) {
-                    *sum += n;
-                }
-            }
-        }
-        unit(sum)
-    };
-    let coarse: Vec<[f32; 3]> = (0..w * h).into_par_iter().map(mean).collect();
-    let sigma = sigma_px as f32 / step as f32;
+/// Vectors smoothed among those alike (Tomasi & Manduchi 1998).
+fn bilateral(vectors: &[[f32; 3]], width: usize, sigma: f32) -> Vec<[f32; 3]> {
+    let height = vectors.len() / width;
     let reach = (REACH * sigma).ceil() as usize;
     let near = |d: f32| (-0.5 * (d / sigma).powi(2)).exp();
     let across: Vec<f32> = (0..=reach).map(|d| near(d as f32)).collect();
     let smoothed = |i: usize| {
-        let (x, y) = (i % w, i / w);
-        let own = coarse[i];
+        let (x, y) = (i % width, i / width);
+        let own = vectors[i];
         let mut sum = [0.0f32; 3];
-        for v in y.saturating_sub(reach)..(y + reach + 1).min(h) {
-            for u in x.saturating_sub(reach)..(x + reach + 1).min(w) {
-                let other = coarse[v * w + u];
+        for v in y.saturating_sub(reach)..(y + reach + 1).min(height) {
+            for u in x.saturating_sub(reach)..(x + reach + 1).min(width) {
+                let other = vectors[v * width + u];
                 let square: f32 = (0..3).map(|c| (own[c] - other[c]).powi(2)).sum();
                 let alike = (-0.5 * square / (CREASE * CREASE)).exp();
                 let weight = across[u.abs_diff(x)] * across[v.abs_diff(y)] * alike;
@@ -173,24 +264,5 @@ fn bilateral(normals: &[[f32; 3]], width: usize, sigma_px: f64) -> Vec<[f32; 3]>
         }
         unit(sum)
     };
-    let smooth: Vec<[f32; 3]> = (0..w * h).into_par_iter().map(smoothed).collect();
-    if step == 1 {
-        return smooth;
-    }
-    let between = |at: usize, cells: usize| {
-        let place = ((at as f32 + 0.5) / step as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
-        let first = (place as usize).min(cells.saturating_sub(2));
-        (first, (first + 1).min(cells - 1), place - first as f32)
-    };
-    (0..width * height)
-        .into_par_iter()
-        .map(|i| {
-            let (x0, x1, u) = between(i % width, w);
-            let (y0, y1, v) = between(i / width, h);
-            [0, 1, 2].map(|c| {
-                let row = |y: usize| smooth[y * w + x0][c] * (1.0 - u) + smooth[y * w + x1][c] * u;
-                row(y0) * (1.0 - v) + row(y1) * v
-            })
-        })
-        .collect()
+    (0..vectors.len()).into_par_iter().map(smoothed).collect()
 }

@@ -15,6 +15,11 @@
 //! difference by how far it is from its slope (Cauchy's weights, found in turn), and solves the
 //! weighted equations by conjugate gradients, preconditioned by the exact solver.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
 use rayon::prelude::*;
 
 use super::transform::{Kind, Line, transform};
@@ -255,12 +260,14 @@ fn conjugate_gradients(
     let mut along = dot(&residual, &better);
     let first = along;
     for _ in 0..STEPS {
-        if !(along > first * DONE * DONE && along > 0.0) {
+        // NaN ends it too.
+        let left = along > first * DONE * DONE && along > 0.0;
+        if !left {
             break;
         }
         let applied = weighted_laplacian(&direction, weights, width);
         let curvature = dot(&direction, &applied);
-        if !(curvature > 0.0) {
+        if curvature.is_nan() || curvature <= 0.0 {
             break;
         }
         let step = along / curvature;

@@ -3,6 +3,11 @@
 //! Two real lines share one complex transform (Makhoul, *IEEE Transactions on Acoustics, Speech and
 //! Signal Processing* 28 (1980) 27, for the cosine transform's order of values).
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
 use std::{f64::consts::PI, sync::Arc};
 
 use rayon::prelude::*;

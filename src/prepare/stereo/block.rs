@@ -8,6 +8,11 @@
 //! | `w` | the weight of a photograph, 1 where it is trusted |
 //! | `g` | the normal times the albedo |
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
 use glam::{DVec2, DVec3};
 
 use super::{

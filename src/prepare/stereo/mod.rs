@@ -13,6 +13,11 @@
 //! row, in one pass over its values. Values are f32, as photographs have 16 bits at most; what is
 //! summed over pixels is f64.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
 mod block;
 mod relight;
 pub mod response;

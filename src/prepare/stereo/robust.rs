@@ -10,6 +10,11 @@
 //! Foschi, Gaiani & Garagnani 2021), unless the place is matte already, which is the same test of
 //! the residual that calls this module at all.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
 use glam::DVec3;
 
 use super::block::{LANES, Lamps, Lane, Lane3, solve_weighted};
