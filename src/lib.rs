@@ -25,13 +25,14 @@
 //! | [`compute`] | the shipped physics on the graphics device, without a picture |
 //! | [`tradeoff`] | how far each tier is from the judge, and which one serves a scene |
 //! | [`cost`] | what each tier costs: instructions, and time on this machine |
+//! | [`prepare`] | the photographer's bench: photographs under several lamps → maps of a sheet |
 //! | [`sample`] | the sample exhibits, drawn by code |
 //! | [`cli`] | one file for each command |
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
 //! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
 //! `colour`, `maps`, `measure`, `readings`, `figure`, `manifest`, `installation`, `needs`, `optics`,
-//! `reference`, `tradeoff`, `sample` and `wording` never name Bevy; `tests/layers.rs` holds the
+//! `reference`, `tradeoff`, `prepare`, `sample` and `wording` never name Bevy; `tests/layers.rs` holds the
 //! table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes
@@ -52,6 +53,7 @@ pub mod maps;
 pub mod measure;
 pub mod needs;
 pub mod optics;
+pub mod prepare;
 pub mod readings;
 pub mod reference;
 pub mod sample;

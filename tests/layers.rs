@@ -8,7 +8,7 @@ use std::{
 
 /// Each module with the modules, or paths within them, that it may name. `bevy` stands for every
 /// crate of Bevy's. The crate's root and `cli` may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 25] = [
+const MAY_IMPORT: [(&str, &[&str]); 26] = [
     ("units", &[]),
     ("colour", &[]),
     ("optics", &["units", "colour"]),
@@ -43,6 +43,11 @@ const MAY_IMPORT: [(&str, &[&str]); 25] = [
             "optics::medium::ParticleConstants",
             "optics::microfacet::d_ggx",
         ],
+    ),
+    // A capture file is read by the manifest's machinery, and what is fitted is the paper's optics.
+    (
+        "prepare",
+        &["units", "colour", "optics", "maps", "manifest", "lettering"],
     ),
     ("sample", &["maps", "colour", "units"]),
     // Tiers are held against the judge here, and predicted on scenes.

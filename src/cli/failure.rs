@@ -8,6 +8,7 @@ use crate::{
     figure::FigureError,
     manifest::{CreateError, Faults, SaveError},
     maps::MapError,
+    prepare::PrepareError,
     sample::SampleError,
     shot::ShotError,
 };
@@ -91,6 +92,15 @@ impl From<Faults> for Failure {
 impl From<MapError> for Failure {
     fn from(error: MapError) -> Self {
         Self::Input(Box::new(error))
+    }
+}
+
+impl From<PrepareError> for Failure {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::Faults(faults) => faults.into(),
+            error => Self::Input(Box::new(error)),
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use clap::Subcommand;
 use super::Failure;
 
 /// What help says about them.
-pub const HELP: &str = "Not in this version yet: prepare, import, export.";
+pub const HELP: &str = "Not in this version yet: import, export.";
 
 /// Whatever follows the command.
 #[derive(clap::Args)]
@@ -35,8 +35,6 @@ macro_rules! commands {
 }
 
 commands! {
-    /// Make maps from photographs
-    Prepare = "prepare",
     /// Import from IIIF, Relight or RTI
     Import = "import",
     /// Export to IIIF

@@ -11,6 +11,7 @@ mod new;
 mod options;
 mod output;
 mod place;
+mod prepare;
 mod probe;
 mod publish;
 mod reference;
@@ -67,11 +68,13 @@ enum Command {
     Register(register::Arguments),
     /// Say what overlays and stacks of bands show at one place
     Probe(probe::Arguments),
+    /// Make maps and an exhibit from photographs under several lamps
+    Prepare(prepare::Arguments),
     /// Start an exhibit from one picture
     New(new::Arguments),
     /// Write the sample exhibits and their maps
     Sample(sample::Arguments),
-    /// Print the JSON Schema of the manifest or of the installation file, for editors
+    /// Print the JSON Schema of the manifest, the installation or the capture file, for editors
     Schema(schema::Arguments),
     /// Publish an exhibit: copy it, whole or not at all, for a wall that goes on meanwhile
     Publish(publish::Arguments),
@@ -97,6 +100,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Measure(arguments) => measure::run(arguments),
         Command::Register(arguments) => register::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
+        Command::Prepare(arguments) => prepare::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

@@ -1,14 +1,14 @@
 //! `recto schema`
 
-use super::{Failure, later, output};
-use crate::{installation, manifest};
+use super::{Failure, output};
+use crate::{installation, manifest, prepare};
 
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Of the installation file instead
     #[arg(long, conflicts_with = "capture")]
     installation: bool,
-    /// Of the capture file instead (not in this version yet)
+    /// Of the capture file instead
     #[arg(long)]
     capture: bool,
 }
@@ -18,7 +18,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return output::result(format_args!("{:#}", installation::schema()));
     }
     if arguments.capture {
-        return Err(later::not_yet("the schema of the capture file"));
+        return output::result(format_args!("{:#}", prepare::capture::schema()));
     }
     output::result(format_args!("{:#}", manifest::schema()))
 }

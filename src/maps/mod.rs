@@ -9,6 +9,7 @@
 //! | raster → levels for the GPU | [`Pyramid`] |
 //! | media over each other → what shows of each | [`load_matter`] |
 //! | several bands of light → one picture | [`load_bands_as_colour`] |
+//! | raster → rows of planes, a few at a time | [`ColourRows`] |
 //! | what a file says at one place | [`colour_at`], [`value_at`], [`category_at`] |
 //! | pixels → file, whole or not at all | [`encode`] |
 //! | another picture's place on the sheet | [`registration`] |
@@ -33,6 +34,7 @@ mod missing;
 mod pyramid;
 mod readout;
 pub mod registration;
+mod rows;
 mod slope;
 pub mod surface;
 mod warp;
@@ -59,6 +61,7 @@ pub use matter::{
 pub use missing::Missing;
 pub use pyramid::{Level, Pyramid, Texels};
 pub use readout::{Rasters, category_at, colour_at, value_at};
+pub use rows::ColourRows;
 pub use slope::load_normal_from_height;
 pub use warp::{Placed, Warp};
 

@@ -26,7 +26,8 @@ fn wrong_usage_ends_with_2() {
         vec!["new", "x"],
         vec!["new", "x", "--albedo", "a.png", "--size-mm", "10"],
         vec!["check", exhibit, "--installation", "x.toml"],
-        vec!["schema", "--capture"],
+        vec!["schema", "--capture", "--installation"],
+        vec!["prepare", "capture.toml"],
         render(["--size", "0x10"]),
         render(["--size", "16385x1"]),
         render(["--size", "-1x10"]),
@@ -108,7 +109,7 @@ fn a_mistyped_tier_is_told_all_names() {
 
 #[test]
 fn commands_of_later_versions_never_succeed() {
-    for command in ["prepare", "import", "export"] {
+    for command in ["import", "export"] {
         for more in [&["x", "--out", "y", "--samples", "4"][..], &["--help"], &[]] {
             let output = recto().arg(command).args(more).output().unwrap();
             let stderr = code(&output, 2);

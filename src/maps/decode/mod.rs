@@ -4,6 +4,7 @@ mod exif;
 mod exr;
 mod jpeg;
 mod png;
+mod rows;
 mod tiff;
 
 use std::{
@@ -14,6 +15,7 @@ use std::{
 
 use super::{Header, MAX_SIDE, MapError, Missing};
 pub(super) use exif::Orientation;
+pub(super) use rows::RowSource;
 
 /// The most memory that one decoded picture may take, in bytes.
 const MAX_BYTES: u64 = 2 << 30;
@@ -38,6 +40,24 @@ pub(super) enum Samples {
     U8(Vec<u8>),
     U16(Vec<u16>),
     F32(Vec<f32>),
+}
+
+/// The type of channel values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    U8,
+    U16,
+    F32,
+}
+
+impl Samples {
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::U8(_) => Kind::U8,
+            Self::U16(_) => Kind::U16,
+            Self::F32(_) => Kind::F32,
+        }
+    }
 }
 
 /// A channel value of any type.

@@ -62,6 +62,31 @@ impl PngPicture {
         })
     }
 
+    pub fn path(&self) -> &std::path::Path {
+        &self.path
+    }
+
+    /// Whether rows come one after another, upright.
+    pub fn is_streamed(&self) -> bool {
+        !self.reader.info().interlaced && self.orientation == Orientation::default()
+    }
+
+    /// The embedded ICC profile.
+    pub fn icc(&self) -> Option<Vec<u8>> {
+        let profile = self.reader.info().icc_profile.as_ref();
+        profile.map(|profile| profile.to_vec())
+    }
+
+    /// The bytes of the next row, values of 16 bits with the high byte first.
+    pub fn next_row(&mut self) -> Result<&[u8], MapError> {
+        let path = &self.path;
+        match self.reader.next_row() {
+            Ok(Some(row)) => Ok(row.data()),
+            Ok(None) => Err(MapError::damaged(path, "it ends too early")),
+            Err(error) => Err(refused(path, error)),
+        }
+    }
+
     pub fn decode(mut self) -> Result<Raster, MapError> {
         let path = &self.path;
         let bytes = self

@@ -9,7 +9,7 @@ use std::{
 
 use tiff::{
     ColorType, TiffError,
-    decoder::{Decoder, DecodingResult, Limits, ifd::Value},
+    decoder::{ChunkType, Decoder, DecodingResult, Limits, ifd::Value},
     tags::{PlanarConfiguration, Tag},
 };
 
@@ -125,6 +125,46 @@ impl TiffPicture {
             header,
             orientation: Orientation::from_tag(orientation.unwrap_or(1)),
         })
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether whole rows of integers come strip after strip, upright, none of them too large to
+    /// hold many at once.
+    pub fn is_streamed(&self) -> bool {
+        /// Of one strip.
+        const MOST_BYTES: u64 = 16 << 20;
+        let (width, height) = self.decoder.chunk_dimensions();
+        let samples = u64::from(width) * u64::from(height) * u64::from(self.header.channels);
+        !self.planar
+            && !self.header.float
+            && !self.premultiplied
+            && self.stored_bits >= 8
+            && width == self.header.size[0]
+            && samples * u64::from(self.header.bits / 8) <= MOST_BYTES
+            && self.decoder.get_chunk_type() == ChunkType::Strip
+            && self.orientation == Orientation::default()
+    }
+
+    /// The embedded ICC profile.
+    pub fn icc(&self) -> Option<Vec<u8>> {
+        self.icc.clone()
+    }
+
+    /// The samples of a strip, counted from 0.
+    pub fn strip(&mut self, index: u32) -> Result<Samples, MapError> {
+        let path = &self.path;
+        let read = self.decoder.read_chunk(index);
+        match read.map_err(|error| refused(path, error))? {
+            DecodingResult::U8(v) => Ok(Samples::U8(v)),
+            DecodingResult::U16(v) => Ok(Samples::U16(v)),
+            _ => Err(MapError::damaged(
+                path,
+                "its channels contradict its header",
+            )),
+        }
     }
 
     pub fn decode(mut self) -> Result<Raster, MapError> {

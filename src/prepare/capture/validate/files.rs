@@ -1,0 +1,129 @@
+//! Files of a capture: there, readable, no camera's raw files, and of one size.
+
+use std::{
+    fs::File,
+    io::Read,
+    path::{Path, PathBuf},
+};
+
+use super::{super::values::CapturePath, Validator};
+use crate::{
+    manifest::{
+        Pattern,
+        document::{Trail, Words},
+        quote,
+    },
+    maps::{self, MapError},
+};
+
+/// What cameras call their raw files.
+const RAW_EXTENSIONS: [&str; 20] = [
+    "3fr", "arw", "cr2", "cr3", "crw", "dcr", "dng", "erf", "fff", "iiq", "kdc", "mef", "mos",
+    "mrw", "nef", "orf", "pef", "raf", "rw2", "x3f",
+];
+
+/// How a raw file becomes a picture that is read here.
+const DEVELOP: &str = "develop it to a 16-bit linear TIFF without sharpening or tone curve, all \
+     of them alike (such as `dcraw -v -4 -T -W -r 1 1 1 1 FILE`, or a neutral linear profile in \
+     RawTherapee or darktable), and write encoding = \"linear\"";
+
+impl Validator<'_, '_> {
+    /// A path as the program opens it.
+    pub(super) fn path(&self, path: &CapturePath) -> PathBuf {
+        self.folder.join(path.as_str())
+    }
+
+    /// The size in pixels that all these files have, and that of `like` where there is one; says
+    /// what is wrong with each of them.
+    pub(super) fn same_size(
+        &mut self,
+        files: &[(&PathBuf, Trail)],
+        like: Option<([u32; 2], &Path)>,
+    ) -> Option<[u32; 2]> {
+        let mut first: Option<([u32; 2], &Path)> = like;
+        let mut sound = true;
+        for (path, trail) in files {
+            let Some(size) = self.size(path, trail) else {
+                sound = false;
+                continue;
+            };
+            match first {
+                None => first = Some((size, path)),
+                Some((expected, _)) if expected == size => {}
+                Some((expected, of)) => {
+                    sound = false;
+                    let words = Words::new(
+                        format!(
+                            "{} with {} × {} pixels",
+                            quote(&path.to_string_lossy()),
+                            size[0],
+                            size[1]
+                        ),
+                        format!(
+                            "{} × {} pixels, as {} has",
+                            expected[0],
+                            expected[1],
+                            of.display()
+                        ),
+                        "use photographs as the camera took them, none cropped or resized",
+                    );
+                    self.report.fault(trail, words);
+                }
+            }
+        }
+        first.map(|(size, _)| size).filter(|_| sound)
+    }
+
+    /// The size of one picture in pixels.
+    fn size(&mut self, path: &Path, trail: &Trail) -> Option<[u32; 2]> {
+        let shown = quote(&path.to_string_lossy());
+        if is_raw(path) && path.is_file() {
+            let words = Words::new(
+                format!("{shown}, a camera's raw file"),
+                "TIFF, PNG, JPEG or OpenEXR",
+                DEVELOP,
+            );
+            self.report.fault(trail, words);
+            return None;
+        }
+        let error = match maps::probe(path) {
+            Ok(header) => return Some(header.size),
+            Err(error) => error,
+        };
+        let (found, remedy) = match &error {
+            MapError::Read { reason, .. } => {
+                let there = reason.kind() != std::io::ErrorKind::NotFound;
+                let found = match there {
+                    true => format!("{shown} ({reason})"),
+                    false => format!("{shown}, which is not there"),
+                };
+                (found, "correct the path, from the capture file's folder")
+            }
+            _ => (error.to_string(), "export this photograph again"),
+        };
+        let words = Words::new(found, "TIFF, PNG, JPEG or OpenEXR", remedy);
+        self.report.fault(trail, words);
+        None
+    }
+}
+
+/// Whether a file is what a camera writes before it makes a picture of it: by its name, or by what
+/// it begins with.
+pub(super) fn is_raw(path: &Path) -> bool {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let extension = extension.map(str::to_ascii_lowercase);
+    if extension.is_some_and(|extension| RAW_EXTENSIONS.contains(&extension.as_str())) {
+        return true;
+    }
+    let mut start = [0; 16];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    read.is_ok()
+        && match &start {
+            [b'I', b'I', 42, 0, _, _, _, _, b'C', b'R', ..] => true,
+            [b'I', b'I', b'R', b'O' | b'S', ..] | [b'I', b'I', b'U', 0, ..] => true,
+            [b'F', b'U', b'J', b'I', b'F', b'I', b'L', b'M', ..] => true,
+            [_, _, _, _, b'f', b't', b'y', b'p', b'c', b'r', b'x', ..] => true,
+            [b'F', b'O', b'V', b'b', ..] | [0, b'M', b'R', b'M', ..] => true,
+            _ => false,
+        }
+}

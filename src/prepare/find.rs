@@ -1,0 +1,297 @@
+//! Before the bands run through: where the lamps are, how bright, what they give to each place,
+//! and how colours are corrected.
+
+use std::path::{Path, PathBuf};
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::{
+    PrepareError,
+    capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots, Sphere},
+    colour::{
+        chart,
+        correct::{self, Fitted},
+    },
+    flat_field::FlatField,
+    lights::{self, intensity, sphere},
+    photographs::Stack,
+    stereo::{Gain, Rig, Standing},
+};
+
+/// Places that brightness is compared at, along the longer side.
+const SAMPLES: usize = 96;
+
+/// The lamps of a capture, as found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundLamps {
+    pub standing: Standing,
+    /// The ball that they were found in.
+    pub circle: Option<Circle>,
+    /// How well they span space: see [`lights::spread`].
+    pub spread: f64,
+}
+
+/// Finds the lamps.
+///
+/// # Errors
+/// Where a ball shows none, or they do not stand around the sheet.
+pub fn lamps(capture: &Capture, scratch: &Path) -> Result<FoundLamps, PrepareError> {
+    let (standing, circle) = match &capture.lamps.places {
+        Places::Directions(directions) => (Standing::Far(directions.clone()), None),
+        Places::Positions(positions) => (Standing::Near(positions.clone()), None),
+        Places::Sphere(ball) => {
+            let photographs = match ball.photographs.is_empty() {
+                true => &capture.recto.photographs,
+                false => &ball.photographs,
+            };
+            let circle = circle(ball, photographs)?;
+            let found: Result<Vec<DVec3>, PrepareError> = photographs
+                .iter()
+                .map(|path| in_ball(path, capture, circle, scratch))
+                .collect();
+            (Standing::Far(found?), Some(circle))
+        }
+    };
+    let directions: Vec<DVec3> = match &standing {
+        Standing::Far(lamps) | Standing::Near(lamps) => {
+            lamps.iter().map(|lamp| lamp.normalize()).collect()
+        }
+    };
+    let spread = lights::spread(&directions).map_err(|why| PrepareError::Lamps {
+        file: capture.file.clone(),
+        why,
+    })?;
+    Ok(FoundLamps {
+        standing,
+        circle,
+        spread,
+    })
+}
+
+fn circle(ball: &Sphere, photographs: &[PathBuf]) -> Result<Circle, PrepareError> {
+    let first = photographs.first().cloned().unwrap_or_default();
+    ball.circle.ok_or(PrepareError::NoBall { path: first })
+}
+
+/// The lamp that a ball shows in one photograph.
+fn in_ball(
+    path: &Path,
+    capture: &Capture,
+    circle: Circle,
+    scratch: &Path,
+) -> Result<DVec3, PrepareError> {
+    let refused = |why| PrepareError::Ball {
+        path: path.to_owned(),
+        why,
+    };
+    let size = crate::maps::probe(path)?.size;
+    let low = circle.centre - circle.radius;
+    let high = circle.centre + circle.radius;
+    let whole =
+        low.min_element() >= 0.0 && high.x <= f64::from(size[0]) && high.y <= f64::from(size[1]);
+    if !whole {
+        return Err(refused(sphere::NoHighlight::Outside));
+    }
+    let crop = Crop {
+        left: low.x as u32,
+        top: low.y as u32,
+        right: (high.x.ceil() as u32).min(size[0]),
+        bottom: (high.y.ceil() as u32).min(size[1]),
+    };
+    let planes = planes(path, capture, crop, scratch)?;
+    let luma = sphere::luma(planes.each_ref().map(Vec::as_slice));
+    let within = Circle {
+        centre: circle.centre - DVec2::new(f64::from(crop.left), f64::from(crop.top)),
+        ..circle
+    };
+    let found = sphere::highlight(&luma, [crop.width(), crop.height()], within);
+    found.map(|found| found.direction).map_err(refused)
+}
+
+/// Part of a photograph, as planes.
+pub fn planes(
+    path: &Path,
+    capture: &Capture,
+    crop: Crop,
+    scratch: &Path,
+) -> Result<[Vec<f32>; 3], PrepareError> {
+    let paths = [path.to_owned()];
+    let mut stack = Stack::open(&paths, None, capture.encoding, crop, scratch)?;
+    let mut planes = [Vec::new(), Vec::new(), Vec::new()];
+    while let Some(band) = stack.next()? {
+        for (plane, rows) in planes.iter_mut().zip(&band.planes[0]) {
+            plane.extend_from_slice(rows);
+        }
+    }
+    Ok(planes)
+}
+
+/// The whole of a picture of this size.
+pub fn whole([right, bottom]: [u32; 2]) -> Crop {
+    Crop {
+        left: 0,
+        top: 0,
+        right,
+        bottom,
+    }
+}
+
+/// What each lamp gives to each place of a side; empty where no grey card was photographed.
+///
+/// # Errors
+/// Of the first card that cannot be used.
+pub fn flat_fields(
+    capture: &Capture,
+    shots: &Shots,
+    scratch: &Path,
+) -> Result<Vec<FlatField>, PrepareError> {
+    let Light::FlatField {
+        photographs,
+        reflectance,
+    } = &capture.lamps.light
+    else {
+        return Ok(Vec::new());
+    };
+    let read = |path: &PathBuf| {
+        FlatField::read(path, capture.encoding, shots.crop, *reflectance, scratch)
+            .map_err(PrepareError::from)
+    };
+    photographs.par_iter().map(read).collect()
+}
+
+/// The lamps as the photographs of a side see them.
+///
+/// # Errors
+/// Where they cannot be compared in brightness, and none of a file.
+pub fn rig(
+    capture: &Capture,
+    shots: &Shots,
+    lamps: &FoundLamps,
+    scratch: &Path,
+) -> Result<Rig, PrepareError> {
+    let crop = shots.crop;
+    let [width, height] = shots.size.map(f64::from);
+    let mut rig = Rig {
+        standing: lamps.standing.clone(),
+        gain: Gain::FlatFielded,
+        mm_per_px: capture.mm_per_px,
+        middle_px: DVec2::new(width, height) / 2.0
+            - DVec2::new(f64::from(crop.left), f64::from(crop.top)),
+    };
+    let count = rig.count();
+    rig.gain = match &capture.lamps.light {
+        Light::FlatField { .. } => Gain::FlatFielded,
+        Light::Relative(values) => Gain::Relative(values.clone()),
+        Light::Unknown(Intensities::Equal) => Gain::Relative(vec![1.0; count]),
+        Light::Unknown(Intensities::Solve) => {
+            let directions: Vec<DVec3> = match &lamps.standing {
+                Standing::Far(lamps) | Standing::Near(lamps) => {
+                    lamps.iter().map(|lamp| lamp.normalize()).collect()
+                }
+            };
+            let samples = samples(capture, shots, &rig, scratch)?;
+            let found = intensity::solve(&directions, &samples);
+            Gain::Relative(found.ok_or_else(|| PrepareError::Dark {
+                path: shots.photographs[0].clone(),
+            })?)
+        }
+    };
+    Ok(rig)
+}
+
+/// What all photographs show at places all over the sheet, each for its own distance and angle
+/// to a near lamp.
+fn samples(
+    capture: &Capture,
+    shots: &Shots,
+    rig: &Rig,
+    scratch: &Path,
+) -> Result<Vec<Vec<f64>>, PrepareError> {
+    let middle = Rig {
+        gain: Gain::Relative(vec![1.0; rig.count()]),
+        ..rig.clone()
+    };
+    let step = (shots.crop.width().max(shots.crop.height()) / SAMPLES).max(1);
+    let ambient = shots.ambient.as_deref();
+    let mut stack = Stack::open(
+        &shots.photographs,
+        ambient,
+        capture.encoding,
+        shots.crop,
+        scratch,
+    )?;
+    let mut samples = Vec::new();
+    while let Some(band) = stack.next()? {
+        for row in (0..band.rows).filter(|row| (band.top + row).is_multiple_of(step)) {
+            for x in (step / 2..band.width).step_by(step) {
+                let at = DVec2::new(x as f64 + 0.5, (band.top + row) as f64 + 0.5);
+                let shown = (0..rig.count()).map(|i| {
+                    let grey: f32 = band.row(i, row).iter().map(|plane| plane[x]).sum();
+                    let lit = middle.lamp(i, at);
+                    // As the lamp would show it from the middle.
+                    let from_middle = middle.lamp(i, middle.middle_px).l.z;
+                    f64::from(grey) / (lit.gain * lit.l.z.max(1e-3)) * from_middle
+                });
+                samples.push(shown.collect());
+            }
+        }
+    }
+    Ok(samples)
+}
+
+/// The correction of colours, where there is a chart.
+///
+/// # Errors
+/// Where its patches cannot be read.
+pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, PrepareError> {
+    let Some(chart) = &capture.chart else {
+        return Ok(None);
+    };
+    let Chart {
+        photograph,
+        corners,
+        lab,
+        flat_field,
+    } = chart;
+    let refused = |why| PrepareError::Chart {
+        path: photograph.clone(),
+        why,
+    };
+    let corners = corners.ok_or_else(|| refused(chart::ChartError::NotFound))?;
+    let size = crate::maps::probe(photograph)?.size;
+    let mut planes = planes(photograph, capture, whole(size), scratch)?;
+    let [width, height] = size.map(|v| v as usize);
+    // Clipping shows before the light is evened out.
+    let read = |planes: &[Vec<f32>; 3]| {
+        chart::colours(
+            planes.each_ref().map(Vec::as_slice),
+            [width, height],
+            corners,
+        )
+    };
+    let mut colours = read(&planes).map_err(refused)?;
+    if let Some(card) = flat_field {
+        let reflectance = match &capture.lamps.light {
+            Light::FlatField { reflectance, .. } => *reflectance,
+            _ => 1.0,
+        };
+        let field = FlatField::read(card, capture.encoding, whole(size), reflectance, scratch)?;
+        let [r, g, b] = &mut planes;
+        for y in 0..height {
+            let row = y * width..(y + 1) * width;
+            let planes = [&mut r[row.clone()], &mut g[row.clone()], &mut b[row]];
+            field.divide(y, planes);
+        }
+        colours = chart::colours_unclipped(
+            planes.each_ref().map(Vec::as_slice),
+            [width, height],
+            corners,
+        )
+        .map_err(refused)?;
+    }
+    let fitted = correct::fit(&colours, lab, capture.illuminant.xy());
+    fitted
+        .map(Some)
+        .ok_or_else(|| refused(chart::ChartError::Flat))
+}

@@ -1,0 +1,169 @@
+//! Many photographs of one sheet, read together a band of rows at a time: what is in memory is
+//! bounded by rows, whatever the number of photographs.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::capture::Crop;
+use crate::maps::{ColourEncoding, ColourRows, MapError};
+
+/// What a band may take in memory, in bytes.
+const BAND_BYTES: usize = 96 << 20;
+/// Bytes of one pixel of one photograph.
+const PIXEL_BYTES: usize = 3 * size_of::<f32>();
+
+/// Why photographs cannot be read together.
+#[derive(Debug, thiserror::Error)]
+pub enum StackError {
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// The file was changed since the capture was checked.
+    #[error(
+        "{path}: is {found} pixels high or wide now, too small for what is to be read of it; begin again"
+    )]
+    Changed { path: PathBuf, found: String },
+}
+
+/// Photographs of one size.
+pub struct Stack {
+    readers: Vec<ColourRows>,
+    ambient: Option<ColourRows>,
+    crop: Crop,
+    /// Rows of the crop that have been read.
+    done: usize,
+    band_rows: usize,
+}
+
+/// Rows of all photographs of a stack.
+pub struct Band {
+    /// The first row, counted from the top of the crop.
+    pub top: usize,
+    pub rows: usize,
+    pub width: usize,
+    /// Of each photograph, linear red, green and blue.
+    pub planes: Vec<[Vec<f32>; 3]>,
+}
+
+impl Band {
+    /// Red, green and blue of a row of a photograph.
+    pub fn row(&self, photograph: usize, row: usize) -> [&[f32]; 3] {
+        let range = row * self.width..(row + 1) * self.width;
+        self.planes[photograph]
+            .each_ref()
+            .map(|plane| &plane[range.clone()])
+    }
+}
+
+impl Stack {
+    /// Opens photographs in the order of the lamps, and one without lamps that is taken from each;
+    /// `crop` of them is read. What a format does not give row by row is laid down in `scratch`.
+    ///
+    /// # Errors
+    /// The first file that cannot be opened.
+    pub fn open(
+        paths: &[PathBuf],
+        ambient: Option<&Path>,
+        encoding: ColourEncoding,
+        crop: Crop,
+        scratch: &Path,
+    ) -> Result<Self, StackError> {
+        let open = |path: &Path| -> Result<ColourRows, StackError> {
+            let rows = ColourRows::open(path, encoding, scratch)?;
+            let [width, height] = rows.header().size;
+            if width < crop.right || height < crop.bottom {
+                return Err(StackError::Changed {
+                    path: path.to_owned(),
+                    found: format!("{width} × {height}"),
+                });
+            }
+            Ok(rows)
+        };
+        let mut readers = Vec::with_capacity(paths.len());
+        for path in paths {
+            readers.push(open(path)?);
+        }
+        let ambient = ambient.map(open).transpose()?;
+        let full = readers.first().map_or(1, |rows| rows.header().size[0]) as usize;
+        let count = paths.len() + usize::from(ambient.is_some());
+        let bytes = full * PIXEL_BYTES * count.max(1);
+        let mut stack = Self {
+            readers,
+            ambient,
+            crop,
+            done: 0,
+            band_rows: (BAND_BYTES / bytes).clamp(1, 512),
+        };
+        stack.skip(crop.top as usize)?;
+        Ok(stack)
+    }
+
+    /// Whether any photograph holds floats, which have no level of clipping.
+    pub fn is_float(&self) -> bool {
+        self.readers.iter().any(|rows| rows.header().float)
+    }
+
+    fn skip(&mut self, rows: usize) -> Result<(), StackError> {
+        for reader in self.readers.iter_mut().chain(&mut self.ambient) {
+            let width = reader.header().size[0] as usize;
+            let mut left = rows;
+            while left > 0 {
+                let now = left.min(self.band_rows);
+                let mut planes = [0, 1, 2].map(|_| vec![0.0; width * now]);
+                reader.read(planes.each_mut().map(Vec::as_mut_slice))?;
+                left -= now;
+            }
+        }
+        Ok(())
+    }
+
+    /// The next band; `None` at the lower edge.
+    ///
+    /// # Errors
+    /// Of the first photograph that breaks off.
+    #[allow(
+        clippy::should_implement_trait,
+        reason = "an iterator would hide that reading can fail"
+    )]
+    pub fn next(&mut self) -> Result<Option<Band>, StackError> {
+        let rows = self.band_rows.min(self.crop.height() - self.done);
+        if rows == 0 {
+            return Ok(None);
+        }
+        let crop = self.crop;
+        let read = |reader: &mut ColourRows| -> Result<[Vec<f32>; 3], MapError> {
+            let full = reader.header().size[0] as usize;
+            let mut planes = [0, 1, 2].map(|_| vec![0.0; full * rows]);
+            reader.read(planes.each_mut().map(Vec::as_mut_slice))?;
+            if crop.width() < full {
+                for plane in &mut planes {
+                    for y in 0..rows {
+                        let from = y * full + crop.left as usize;
+                        plane.copy_within(from..from + crop.width(), y * crop.width());
+                    }
+                    plane.truncate(rows * crop.width());
+                }
+            }
+            Ok(planes)
+        };
+        let planes: Result<Vec<_>, MapError> = self.readers.par_iter_mut().map(read).collect();
+        let mut planes = planes?;
+        if let Some(ambient) = self.ambient.as_mut().map(read).transpose()? {
+            for photograph in &mut planes {
+                for (plane, dark) in photograph.iter_mut().zip(&ambient) {
+                    for (value, dark) in plane.iter_mut().zip(dark) {
+                        *value -= dark;
+                    }
+                }
+            }
+        }
+        let band = Band {
+            top: self.done,
+            rows,
+            width: crop.width(),
+            planes,
+        };
+        self.done += rows;
+        Ok(Some(band))
+    }
+}

@@ -1,0 +1,122 @@
+//! Surfaces of one sheet in comparison, and planes taken out of them.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
+use crate::prepare::linear::solve_positive;
+
+/// Mean and standard deviation of a difference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    pub mean: f64,
+    pub sigma: f64,
+    /// How many places it is of.
+    pub count: usize,
+}
+
+/// How two surfaces differ, in their unit, once shift and tilt of the whole are taken out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    pub whole: Spread,
+    /// For each size of patches in mm, the patches in rows from the top left; those that the sheet
+    /// does not fill are left out.
+    pub patches: Vec<(f64, Vec<Spread>)>,
+}
+
+/// The sizes of patches that the article compares over, in mm.
+pub const PATCHES_MM: [f64; 2] = [100.0, 50.0];
+
+/// Compares heights `a` with `b`, pictures of one size; NaN is a hole in either. `None` where less
+/// than three places are in both.
+pub fn compare(
+    a: &[f64],
+    b: &[f64],
+    width: usize,
+    mm_per_px: f64,
+    patches_mm: &[f64],
+) -> Option<Comparison> {
+    let mut difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    remove_plane(&mut difference, width)?;
+    let whole = spread(difference.iter().copied())?;
+    let height = difference.len() / width;
+    let of_size = |mm: f64| {
+        let side = ((mm / mm_per_px).round() as usize).max(1);
+        let mut patches = Vec::new();
+        for top in (0..height).step_by(side).filter(|top| top + side <= height) {
+            for left in (0..width).step_by(side).filter(|left| left + side <= width) {
+                let rows = top..top + side;
+                let values = rows
+                    .flat_map(|y| &difference[y * width + left..y * width + left + side])
+                    .copied();
+                patches.extend(spread(values));
+            }
+        }
+        (mm, patches)
+    };
+    Some(Comparison {
+        whole,
+        patches: patches_mm.iter().map(|mm| of_size(*mm)).collect(),
+    })
+}
+
+fn spread(values: impl Iterator<Item = f64>) -> Option<Spread> {
+    // Welford's sums do not cancel.
+    let (mut count, mut mean, mut squares) = (0usize, 0.0, 0.0);
+    for value in values.filter(|value| value.is_finite()) {
+        count += 1;
+        let off = value - mean;
+        mean += off / count as f64;
+        squares += off * (value - mean);
+    }
+    (count > 0).then(|| Spread {
+        mean,
+        sigma: (squares / count as f64).sqrt(),
+        count,
+    })
+}
+
+/// Takes the plane nearest to the heights out of them, and gives it: its height in the middle of
+/// the picture and its slopes per pixel to the right and down. Holes (NaN) stay. `None` where
+/// fewer than three places, or places on one line, are known.
+pub fn remove_plane(heights: &mut [f64], width: usize) -> Option<[f64; 3]> {
+    let height = heights.len().checked_div(width)?;
+    let (middle_x, middle_y) = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
+    let place = |i: usize| {
+        [
+            1.0,
+            (i % width) as f64 - middle_x,
+            (i / width) as f64 - middle_y,
+        ]
+    };
+    let mut a = vec![vec![0.0; 3]; 3];
+    let mut b = vec![0.0; 3];
+    for (i, value) in heights.iter().enumerate().filter(|(_, v)| v.is_finite()) {
+        let row = place(i);
+        for j in 0..3 {
+            for k in 0..3 {
+                a[j][k] += row[j] * row[k];
+            }
+            b[j] += row[j] * value;
+        }
+    }
+    let plane = solve_positive(&a, &[b])?.pop()?;
+    for (i, value) in heights.iter_mut().enumerate() {
+        let row = place(i);
+        *value -= (0..3).map(|j| row[j] * plane[j]).sum::<f64>();
+    }
+    plane.try_into().ok()
+}
+
+/// The range of heights between these shares of all places (such as 0.001 and 0.999, so that
+/// single pixels do not decide). `None` where there is none.
+pub fn range(heights: &[f64], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+    let mut sorted: Vec<f64> = heights.iter().copied().filter(|h| h.is_finite()).collect();
+    let last = sorted.len().checked_sub(1)?;
+    let mut at = |share: f64| {
+        let i = ((share.clamp(0.0, 1.0) * last as f64).round() as usize).min(last);
+        *sorted.select_nth_unstable_by(i, f64::total_cmp).1
+    };
+    Some([at(low), at(high)])
+}

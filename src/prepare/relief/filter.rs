@@ -1,0 +1,268 @@
+//! Normals of the sheet's shape, and of its grain and strokes.
+//!
+//! With n the normals found, b the same smoothed, and f = (0, 0, 1) those of a flat sheet:
+//! b is the shape at large (macro), and m = n − (b − f) the rest (meso), as Apollonio, Foschi,
+//! Gaiani & Garagnani 2021 split them, but in floats.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "several arrays run along one index, as their formulas do"
+)]
+
+use rayon::prelude::*;
+
+use crate::prepare::capture::Filter;
+
+/// Boxes that make a Gaussian: four of them are within 0.3 % of it.
+const BOXES: usize = 4;
+/// How far normals may differ, in radians, to belong to one side of a crease.
+const CREASE: f32 = 0.15;
+/// What the bilateral filter looks at, in standard deviations.
+const REACH: f32 = 2.0;
+/// The standard deviations of both filters in pixels of the smaller picture that they work on, at
+/// least: between its pixels, what a Gaussian leaves is linear to 0.2 %.
+const COARSE: [f64; 2] = [8.0, 4.0];
+
+/// Normals split by scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Split {
+    /// Of the shape at large.
+    pub large: Coarse,
+    /// Unit normals of what is smaller, upright where there is nothing.
+    pub small: Vec<[f32; 3]>,
+}
+
+/// Vectors that change slowly, for squares of pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coarse {
+    pub vectors: Vec<[f32; 3]>,
+    /// How many vectors are in a row.
+    pub width: usize,
+    /// Pixels along a side of a square; those at the right and lower edge may be cut.
+    pub step: usize,
+}
+
+impl Coarse {
+    /// Means over squares of `step` pixels.
+    fn new(vectors: &[[f32; 3]], width: usize, step: usize) -> Self {
+        let height = vectors.len() / width;
+        let (w, h) = (width.div_ceil(step), height.div_ceil(step));
+        let mean = |i: usize| {
+            let (left, top) = (i % w * step, i / w * step);
+            let rows = top..(top + step).min(height);
+            let columns = left..(left + step).min(width);
+            let mut sum = [0.0f32; 3];
+            for y in rows.clone() {
+                for v in &vectors[y * width + columns.start..y * width + columns.end] {
+                    for (sum, v) in sum.iter_mut().zip(v) {
+                        *sum += v;
+                    }
+                }
+            }
+            let count = (rows.len() * columns.len()) as f32;
+            sum.map(|sum| sum / count)
+        };
+        Self {
+            vectors: (0..w * h).into_par_iter().map(mean).collect(),
+            width: w,
+            step,
+        }
+    }
+
+    /// Calls `each` with the vectors of a row of `width` pixels, bilinear between the squares'
+    /// middles.
+    fn row(&self, y: usize, width: usize, mut each: impl FnMut(usize, [f32; 3])) {
+        let height = self.vectors.len() / self.width;
+        let between = |at: usize, cells: usize| {
+            let place = (at as f32 + 0.5) / self.step as f32 - 0.5;
+            let place = place.clamp(0.0, (cells - 1) as f32);
+            let first = (place as usize).min(cells.saturating_sub(2));
+            (first, (first + 1).min(cells - 1), place - first as f32)
+        };
+        let (above, below, v) = between(y, height);
+        let at = |row: usize, x: usize| self.vectors[row * self.width + x];
+        for x in 0..width {
+            let (left, right, u) = between(x, self.width);
+            let corners = [
+                at(above, left),
+                at(above, right),
+                at(below, left),
+                at(below, right),
+            ];
+            each(
+                x,
+                [0, 1, 2].map(|c| {
+                    let top = corners[0][c] * (1.0 - u) + corners[1][c] * u;
+                    let bottom = corners[2][c] * (1.0 - u) + corners[3][c] * u;
+                    top * (1.0 - v) + bottom * v
+                }),
+            );
+        }
+    }
+
+    /// A vector for each pixel of a picture of this size.
+    pub fn sampled(&self, [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
+        let mut all = vec![[0.0; 3]; width * height];
+        if width > 0 {
+            all.par_chunks_mut(width)
+                .enumerate()
+                .for_each(|(y, row)| self.row(y, width, |x, v| row[x] = v));
+        }
+        all
+    }
+}
+
+/// Splits unit normals at a standard deviation of `sigma_px` pixels (> 0).
+pub fn split(mut normals: Vec<[f32; 3]>, width: usize, sigma_px: f64, filter: Filter) -> Split {
+    if width == 0 || normals.is_empty() {
+        let large = Coarse {
+            vectors: Vec::new(),
+            width: 0,
+            step: 1,
+        };
+        return Split {
+            large,
+            small: normals,
+        };
+    }
+    let coarse = COARSE[usize::from(filter == Filter::Bilateral)];
+    let step = ((sigma_px / coarse) as usize).max(1);
+    let mut large = Coarse::new(&normals, width, step);
+    let sigma = sigma_px / step as f64;
+    large.vectors = match filter {
+        // The means have smoothed by their own width already.
+        Filter::Gaussian => {
+            let own = if step > 1 { 1.0 / 12.0 } else { 0.0 };
+            gaussian(&large.vectors, large.width, (sigma * sigma - own).sqrt())
+        }
+        Filter::Bilateral => bilateral(&large.vectors, large.width, sigma as f32),
+    };
+    normals
+        .par_chunks_mut(width)
+        .enumerate()
+        .for_each(|(y, row)| {
+            large.row(y, width, |x, b| {
+                let n = row[x];
+                row[x] = unit([n[0] - b[0], n[1] - b[1], n[2] - (b[2] - 1.0)]);
+            });
+        });
+    large.vectors.par_iter_mut().for_each(|v| *v = unit(*v));
+    Split {
+        large,
+        small: normals,
+    }
+}
+
+fn unit(v: [f32; 3]) -> [f32; 3] {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    if length > 1e-6 && v[2] > 0.0 {
+        v.map(|c| c / length)
+    } else {
+        [0.0, 0.0, 1.0]
+    }
+}
+
+/// Vectors smoothed by a Gaussian of `sigma_px`; beyond the edge they go on as at it.
+pub fn gaussian(vectors: &[[f32; 3]], width: usize, sigma_px: f64) -> Vec<[f32; 3]> {
+    if width == 0 || vectors.is_empty() {
+        return Vec::new();
+    }
+    let mut smooth = vectors.to_vec();
+    // A box of radius r with its ends at share a has the variance
+    // (r(r+1)(2r+1)/3 + 2a(r+1)²)/(2r+1+2a): Gwosdek and others 2011.
+    let variance = sigma_px * sigma_px / BOXES as f64;
+    let radius = ((0.5 * ((12.0 * variance + 1.0).sqrt() - 1.0)).floor()).max(0.0);
+    let full = 2.0 * radius + 1.0;
+    let share = full * (radius * (radius + 1.0) - 3.0 * variance)
+        / (6.0 * (variance - (radius + 1.0).powi(2)));
+    let kernel = (radius as usize, share as f32);
+    for pass in 0..2 {
+        let line = if pass == 0 {
+            width
+        } else {
+            vectors.len() / width
+        };
+        smooth
+            .par_chunks_mut(line)
+            .for_each_init(Vec::new, |buffer, row| {
+                for _ in 0..BOXES {
+                    boxed(row, kernel, buffer);
+                }
+            });
+        smooth = transposed(&smooth, line);
+    }
+    smooth
+}
+
+/// One box along a line, in place.
+fn boxed(line: &mut [[f32; 3]], (radius, share): (usize, f32), buffer: &mut Vec<[f32; 3]>) {
+    buffer.clear();
+    buffer.extend_from_slice(line);
+    let last = line.len() - 1;
+    let at = |i: isize| buffer[(i.max(0) as usize).min(last)];
+    let scale = 1.0 / (2.0 * radius as f32 + 1.0 + 2.0 * share);
+    let r = radius as isize;
+    // A running sum in f64 does not drift.
+    let mut sum = [0.0f64; 3];
+    for i in -r..=r {
+        for (sum, v) in sum.iter_mut().zip(at(i)) {
+            *sum += f64::from(v);
+        }
+    }
+    for i in 0..line.len() {
+        let x = i as isize;
+        let (before, after) = (at(x - r - 1), at(x + r + 1));
+        for c in 0..3 {
+            line[i][c] = (sum[c] as f32 + share * (before[c] + after[c])) * scale;
+        }
+        let gone = at(x - r);
+        for c in 0..3 {
+            sum[c] += f64::from(after[c]) - f64::from(gone[c]);
+        }
+    }
+}
+
+fn transposed(picture: &[[f32; 3]], width: usize) -> Vec<[f32; 3]> {
+    const TILE: usize = 32;
+    let height = picture.len() / width;
+    let mut turned = vec![[0.0; 3]; picture.len()];
+    turned
+        .par_chunks_mut(height * TILE)
+        .enumerate()
+        .for_each(|(tile, columns)| {
+            for top in (0..height).step_by(TILE) {
+                for (x, column) in columns.chunks_exact_mut(height).enumerate() {
+                    for y in top..(top + TILE).min(height) {
+                        column[y] = picture[y * width + tile * TILE + x];
+                    }
+                }
+            }
+        });
+    turned
+}
+
+/// Vectors smoothed among those alike (Tomasi & Manduchi 1998).
+fn bilateral(vectors: &[[f32; 3]], width: usize, sigma: f32) -> Vec<[f32; 3]> {
+    let height = vectors.len() / width;
+    let reach = (REACH * sigma).ceil() as usize;
+    let near = |d: f32| (-0.5 * (d / sigma).powi(2)).exp();
+    let across: Vec<f32> = (0..=reach).map(|d| near(d as f32)).collect();
+    let smoothed = |i: usize| {
+        let (x, y) = (i % width, i / width);
+        let own = vectors[i];
+        let mut sum = [0.0f32; 3];
+        for v in y.saturating_sub(reach)..(y + reach + 1).min(height) {
+            for u in x.saturating_sub(reach)..(x + reach + 1).min(width) {
+                let other = vectors[v * width + u];
+                let square: f32 = (0..3).map(|c| (own[c] - other[c]).powi(2)).sum();
+                let alike = (-0.5 * square / (CREASE * CREASE)).exp();
+                let weight = across[u.abs_diff(x)] * across[v.abs_diff(y)] * alike;
+                for (sum, other) in sum.iter_mut().zip(other) {
+                    *sum += weight * other;
+                }
+            }
+        }
+        unit(sum)
+    };
+    (0..vectors.len()).into_par_iter().map(smoothed).collect()
+}

@@ -1,0 +1,13 @@
+//! Relief: from normals to the sheet's shape at large, and what is smaller.
+//!
+//! | step | where |
+//! |---|---|
+//! | normals → shape, and grain and strokes | [`filter`] |
+//! | normals → heights | [`integrate`] |
+//! | cosine and sine transforms | `transform` |
+//! | heights of two surfaces, and their planes | [`compare`] |
+
+pub mod compare;
+pub mod filter;
+pub mod integrate;
+mod transform;

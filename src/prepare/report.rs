@@ -1,0 +1,197 @@
+//! What came of a capture, as one page that needs nothing else.
+
+use std::{fmt::Write as _, fs, io::Write as _, path::Path};
+
+use super::{
+    PrepareError,
+    capture::{Capture, Light, Places},
+    colour::chart::COLORCHECKER24,
+    run::Report,
+};
+use crate::{
+    manifest::SideName,
+    maps::encode::{save_png_rgb8, write_whole},
+};
+
+/// The page's file name.
+pub const REPORT: &str = "report.html";
+/// The longer side of pictures in it.
+const PREVIEW_PX: usize = 640;
+
+const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;\
+    padding:0 1rem;color:#222;background:#fff}table{border-collapse:collapse;margin:1rem 0}\
+    td,th{padding:.2rem .8rem;border-bottom:1px solid #ddd;text-align:right}\
+    td:first-child,th:first-child{text-align:left}img{max-width:100%;margin:.5rem 0}\
+    figure{margin:1rem 0}";
+
+fn preview_name(side: SideName, kind: &str) -> String {
+    let side = match side {
+        SideName::Recto => "recto",
+        SideName::Verso => "verso",
+    };
+    format!(".preview-{side}-{kind}.png")
+}
+
+/// Writes a small picture of a map of this size into `folder`.
+pub(super) fn preview(
+    side: SideName,
+    kind: &str,
+    [width, height]: [usize; 2],
+    at: &dyn Fn(usize) -> [u8; 3],
+    folder: &Path,
+) -> Result<(), PrepareError> {
+    let step = width.max(height).div_ceil(PREVIEW_PX).max(1);
+    let [w, h] = [width.div_ceil(step), height.div_ceil(step)];
+    let pixels: Vec<[u8; 3]> = (0..w * h)
+        .map(|i| at(i / w * step * width + i % w * step))
+        .collect();
+    let path = folder.join(preview_name(side, kind));
+    save_png_rgb8(&path, w as u32, h as u32, &pixels, None)?;
+    Ok(())
+}
+
+/// Text as HTML shows it.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// Writes the page into `folder`, with the pictures that [`preview`] left there.
+pub(super) fn html(capture: &Capture, report: &Report, folder: &Path) -> Result<(), PrepareError> {
+    let page = page(capture, report, folder)?;
+    write_whole(&folder.join(REPORT), |file| file.write_all(page.as_bytes()))?;
+    Ok(())
+}
+
+fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, PrepareError> {
+    let title = escaped(capture.title.as_deref().unwrap_or(&capture.id));
+    let mut out = format!(
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>{title}</title>\
+         <style>{STYLE}</style><h1>{title}</h1><p>Made by Recto {} from {} photographs a side, at \
+         {:.4} mm a pixel.</p>",
+        env!("CARGO_PKG_VERSION"),
+        report.lamps.len(),
+        capture.mm_per_px,
+    );
+    out += &sources(capture, report);
+    out += "<h2>Lamps</h2><table><tr><th>Lamp<th>Azimuth<th>Elevation<th>Intensity";
+    for (i, lamp) in report.lamps.iter().enumerate() {
+        let intensity = match lamp.intensity {
+            Some(value) => format!("{value:.3}"),
+            None => "by the grey card".to_owned(),
+        };
+        // Writing to a string does not fail.
+        let _ = write!(
+            out,
+            "<tr><td>{}<td>{:.2}°<td>{:.2}°<td>{intensity}",
+            i + 1,
+            lamp.azimuth_deg,
+            lamp.elevation_deg
+        );
+    }
+    let _ = write!(
+        out,
+        "</table><p>They span space with {:.2} (1 is best; noise grows by its inverse).</p>",
+        report.spread
+    );
+    if let Some(fitted) = &report.colour {
+        out += "<h2>Colour</h2><table><tr><th>Patch<th>ΔE00 before<th>after";
+        for (i, (before, after)) in fitted.before.iter().zip(&fitted.after).enumerate() {
+            let name = COLORCHECKER24.get(i).map_or("", |patch| patch.name);
+            let _ = write!(out, "<tr><td>{name}<td>{before:.2}<td>{after:.2}");
+        }
+        let _ = write!(
+            out,
+            "<tr><th>mean<th>{:.2}<th>{:.2}</table><p>The {} model was taken. Mean ΔE00 of patches \
+             that were left out of the fit:",
+            mean(&fitted.before),
+            mean(&fitted.after),
+            fitted.correction.model
+        );
+        for (model, error) in &fitted.left_out {
+            let _ = write!(out, " {model} {error:.2};");
+        }
+        out += "</p>";
+    }
+    for side in &report.sides {
+        let name = match side.side {
+            SideName::Recto => "Recto",
+            SideName::Verso => "Verso",
+        };
+        let [width, height] = side.size;
+        let _ = write!(
+            out,
+            "<h2>{name}</h2><table><tr><td>Size<td>{width} × {height} pixels\
+             <tr><td>What the photographs leave over, median and 95 %<td>{:.1} %, {:.1} %\
+             <tr><td>Places at which a photograph was doubted<td>{:.1} %\
+             <tr><td>Shape at large<td>{:.0} … {:.0} µm<tr><td>Grain and strokes<td>{:.1} … {:.1} \
+             µm</table>",
+            side.residual[0] * 100.0,
+            side.residual[1] * 100.0,
+            side.doubted * 100.0,
+            side.shape_um[0],
+            side.shape_um[1],
+            side.grain_um[0],
+            side.grain_um[1],
+        );
+        for (kind, words) in [
+            ("albedo", "Albedo"),
+            ("normal", "Normals of grain and strokes"),
+            (
+                "shape",
+                "Shape at large, from the lowest place (black) to the highest",
+            ),
+        ] {
+            let path = folder.join(preview_name(side.side, kind));
+            let bytes = fs::read(&path).map_err(|reason| PrepareError::Folder { path, reason })?;
+            let _ = write!(
+                out,
+                "<figure><img alt=\"{words}\" src=\"data:image/png;base64,{}\"><figcaption>{words}\
+                 </figcaption></figure>",
+                base64::encode(bytes)
+            );
+        }
+    }
+    Ok(out)
+}
+
+/// Which maps are measured, fitted or assumed.
+fn sources(capture: &Capture, report: &Report) -> String {
+    let lamps = match capture.lamps.places {
+        Places::Sphere(_) => "measured, in a glossy ball",
+        _ => "as stated",
+    };
+    let light = match &capture.lamps.light {
+        Light::FlatField { .. } => "measured, by a grey card for each place",
+        Light::Relative(_) => "as stated",
+        Light::Unknown(_) => "fitted, as the sheet lies flat on the whole",
+    };
+    let colour = match &report.colour {
+        Some(_) => "measured, corrected by a chart",
+        None => "as the camera saw it",
+    };
+    let assumed = report
+        .sides
+        .iter()
+        .any(|side| side.assumed_exposure.is_some());
+    let exposure = match assumed {
+        true => "assumed: the brightest paper is taken for white",
+        false => "measured",
+    };
+    let height = match capture.relief.known_range_um {
+        Some(_) => "measured, and scaled to the stated range",
+        None => "measured, scaled by the lamps",
+    };
+    format!(
+        "<h2>What is measured</h2><table><tr><td>Places of the lamps<td>{lamps}<tr><td>Their \
+         light<td>{light}<tr><td>Colour<td>{colour}<tr><td>Albedo's level<td>{exposure}<tr><td>\
+         Normals<td>measured<tr><td>Heights<td>{height}<tr><td>Paper, roughness, media<td>assumed\
+         </table>"
+    )
+}

@@ -1,0 +1,245 @@
+//! Maps and manifest of what was prepared.
+
+use std::{
+    fs,
+    io::Write as _,
+    path::{Path, PathBuf},
+};
+
+use rayon::prelude::*;
+
+use super::{PrepareError, capture::Capture, report, run::Report};
+use crate::{
+    manifest::{MANIFEST, SideName, check_shape},
+    maps::encode::{save_png_grey16, save_png_rgb16, write_whole},
+};
+
+/// The folder of maps, within the exhibit's.
+const MAPS: &str = "maps";
+
+/// Lines of a manifest about one side.
+pub(super) struct SideText {
+    side: SideName,
+    text: String,
+    /// Of the sheet's shape.
+    surface: String,
+    size: [usize; 2],
+}
+
+fn word(side: SideName) -> &'static str {
+    match side {
+        SideName::Recto => "recto",
+        SideName::Verso => "verso",
+    }
+}
+
+/// The files of a side's maps.
+pub(super) struct SideFiles<'s> {
+    side: SideName,
+    size: [usize; 2],
+    dpi: f64,
+    /// The exhibit's.
+    folder: &'s Path,
+    within: PathBuf,
+}
+
+impl<'s> SideFiles<'s> {
+    /// Makes the folder of a side's maps below `folder`.
+    pub fn new(
+        side: SideName,
+        size: [usize; 2],
+        capture: &Capture,
+        folder: &'s Path,
+    ) -> Result<Self, PrepareError> {
+        let within = folder.join(MAPS).join(word(side));
+        fs::create_dir_all(&within).map_err(|reason| PrepareError::Folder {
+            path: within.clone(),
+            reason,
+        })?;
+        Ok(Self {
+            side,
+            size,
+            dpi: 25.4 / capture.mm_per_px,
+            folder,
+            within,
+        })
+    }
+
+    fn preview(
+        &self,
+        kind: &str,
+        width: usize,
+        at: &dyn Fn(usize) -> [u8; 3],
+        count: usize,
+    ) -> Result<(), PrepareError> {
+        report::preview(
+            self.side,
+            kind,
+            [width, count / width.max(1)],
+            at,
+            self.folder,
+        )
+    }
+
+    /// Writes sRGB-encoded albedo.
+    pub fn albedo(&self, albedo: &[[u16; 3]]) -> Result<(), PrepareError> {
+        let [w, h] = self.size.map(|v| v as u32);
+        save_png_rgb16(
+            &self.within.join("albedo.png"),
+            w,
+            h,
+            albedo,
+            Some(self.dpi),
+        )?;
+        let at = |i: usize| albedo[i].map(|v| (v >> 8) as u8);
+        self.preview("albedo", self.size[0], &at, albedo.len())
+    }
+
+    /// Writes unit normals of grain and strokes.
+    pub fn normal(&self, normals: &[[f32; 3]]) -> Result<(), PrepareError> {
+        let [w, h] = self.size.map(|v| v as u32);
+        let encoded: Vec<[u16; 3]> = normals
+            .par_iter()
+            .map(|n| n.map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0).round() as u16))
+            .collect();
+        save_png_rgb16(
+            &self.within.join("normal.png"),
+            w,
+            h,
+            &encoded,
+            Some(self.dpi),
+        )?;
+        let at = |i: usize| encoded[i].map(|v| (v >> 8) as u8);
+        self.preview("normal", self.size[0], &at, encoded.len())
+    }
+
+    /// Writes the shape at large in µm, and gives the lines of a manifest about it; the recto's
+    /// alone is the sheet's.
+    pub fn shape(&self, um: &[f64], width: usize) -> Result<String, PrepareError> {
+        let levels = Levels::new(um);
+        let at = |i: usize| [(levels.values[i] >> 8) as u8; 3];
+        self.preview("shape", width, &at, um.len())?;
+        if self.side == SideName::Verso {
+            return Ok(String::new());
+        }
+        let (w, h) = (width as u32, (um.len() / width.max(1)) as u32);
+        let path = self.folder.join(MAPS).join("shape.png");
+        save_png_grey16(&path, w, h, &levels.values, None)?;
+        Ok(format!(
+            "[drawing.surface]\n\
+             height = {{ file = \"{MAPS}/shape.png\", range_um = [{}, {}], source = \"measured\" }}\n",
+            levels.range[0], levels.range[1]
+        ))
+    }
+
+    /// Writes heights of grain and strokes in µm, the last of the maps, and gives the lines of a
+    /// manifest about the side.
+    pub fn grain(self, um: &[f64], surface: String) -> Result<SideText, PrepareError> {
+        let [w, h] = self.size.map(|v| v as u32);
+        let levels = Levels::new(um);
+        let path = self.within.join("height.png");
+        save_png_grey16(&path, w, h, &levels.values, Some(self.dpi))?;
+        let name = word(self.side);
+        let text = format!(
+            "albedo = {{ file = \"{MAPS}/{name}/albedo.png\", encoding = \"srgb\" }}\n\
+             normal = {{ file = \"{MAPS}/{name}/normal.png\", y = \"up\" }}\n\
+             height = {{ file = \"{MAPS}/{name}/height.png\", range_um = [{}, {}] }}\n\
+             source = \"measured\"\n",
+            levels.range[0], levels.range[1]
+        );
+        Ok(SideText {
+            side: self.side,
+            text,
+            surface,
+            size: self.size,
+        })
+    }
+}
+
+/// Heights as 16-bit values.
+struct Levels {
+    values: Vec<u16>,
+    /// Of 0 and of 65535, in µm.
+    range: [f64; 2],
+}
+
+impl Levels {
+    fn new(um: &[f64]) -> Self {
+        let fold = |f: fn(f64, f64) -> f64| um.iter().copied().fold(0.0, f);
+        // To a hundredth, as it is written, and never without extent.
+        let low = (fold(f64::min) * 100.0).floor() / 100.0;
+        let high = ((fold(f64::max) * 100.0).ceil() / 100.0).max(low + 0.01);
+        let value = |h: &f64| ((h - low) / (high - low) * 65535.0).round() as u16;
+        Self {
+            values: um.par_iter().map(value).collect(),
+            range: [low, high],
+        }
+    }
+}
+
+/// Writes the manifest that shows the maps.
+pub(super) fn manifest(
+    capture: &Capture,
+    sides: &[SideText],
+    report: &Report,
+    folder: &Path,
+) -> Result<(), PrepareError> {
+    let title = capture.title.as_deref().unwrap_or(&capture.id);
+    let size = sides.first().map_or([1, 1], |side| side.size);
+    let [width, height] = size.map(|px| (px as f64 * capture.mm_per_px * 100.0).round() / 100.0);
+    let mut text = format!(
+        "# Made by `recto prepare` from {} photographs; report.html says how well. `recto schema`\n\
+         # prints what an editor needs to check this file while you type.\n\n\
+         [exhibit]\ntitle = {{ en = {title} }}\n\n\
+         [[drawing]]\nid = {id}\nsize_mm = [{width:?}, {height:?}]\n\
+         # What it is made of was not measured.\npaper = {{ kind = \"laid\", source = \"assumed\" }}\n\n",
+        report.lamps.len(),
+        title = toml::Value::from(title),
+        id = toml::Value::from(capture.id.as_str()),
+    );
+    for side in sides {
+        if !side.surface.is_empty() {
+            text += &side.surface;
+            text += "\n";
+        }
+        text += &format!("[drawing.{}]\n{}", word(side.side), side.text);
+        if side.side == SideName::Verso {
+            text += "register = { flip = \"horizontal\" }\n";
+        }
+        text += "\n";
+    }
+    // Lamps as they stood, so that the photographs can be looked at again.
+    for (i, lamp) in report.lamps.iter().enumerate().take(8) {
+        text += &format!(
+            "[[lamp]]\nid = \"photographed-{}\"\nkind = \"distant\"\nelevation_deg = {:?}\n\
+             azimuth_deg = {:?}\nlux_at_sheet = 150\n\n",
+            i + 1,
+            (lamp.elevation_deg * 10.0).round() / 10.0,
+            (lamp.azimuth_deg * 10.0).round() / 10.0,
+        );
+    }
+    check_shape(&text)?;
+    write_whole(&folder.join(MANIFEST), |file| {
+        file.write_all(text.trim_end().as_bytes())?;
+        file.write_all(b"\n")
+    })?;
+    Ok(())
+}
+
+/// Moves what was staged to its place, the manifest last: whoever opens the folder meanwhile sees
+/// no exhibit, or the whole.
+pub(super) fn publish(stage: &Path, out: &Path) -> Result<(), PrepareError> {
+    let refused = |path: &Path| {
+        let path = path.to_owned();
+        move |reason| PrepareError::Folder { path, reason }
+    };
+    let maps = out.join(MAPS);
+    if maps.exists() {
+        return Err(PrepareError::Exists(maps));
+    }
+    for name in [MAPS, super::report::REPORT, MANIFEST] {
+        let to = out.join(name);
+        fs::rename(stage.join(name), &to).map_err(refused(&to))?;
+    }
+    Ok(())
+}

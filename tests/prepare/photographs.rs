@@ -1,0 +1,211 @@
+//! Photographs: read in bands as they are read whole, whatever their format; grey cards.
+
+use std::path::{Path, PathBuf};
+
+use recto::{
+    maps::{self, ColourEncoding, encode},
+    prepare::{
+        capture::Crop,
+        flat_field::{FlatField, FlatFieldError},
+        photographs::Stack,
+    },
+};
+
+use super::{folder, support::data};
+use crate::test_name;
+
+fn whole(path: &Path) -> Crop {
+    let [right, bottom] = maps::probe(path).expect("a picture").size;
+    Crop {
+        left: 0,
+        top: 0,
+        right,
+        bottom,
+    }
+}
+
+/// A crop of a picture by the loader of maps, which reads it whole.
+fn at_once(path: &Path, encoding: ColourEncoding, crop: Crop) -> Vec<[f32; 3]> {
+    let mut pixels = Vec::new();
+    maps::for_each_colour_row(path, encoding, |y, row| {
+        if (crop.top..crop.bottom).contains(&(y as u32)) {
+            let row = &row[crop.left as usize..crop.right as usize];
+            pixels.extend(row.iter().map(|p| [p[0], p[1], p[2]]));
+        }
+    })
+    .expect("a picture");
+    pixels
+}
+
+fn in_bands(paths: &[PathBuf], encoding: ColourEncoding, crop: Crop) -> Vec<Vec<[f32; 3]>> {
+    let scratch = folder();
+    let mut stack = Stack::open(paths, None, encoding, crop, scratch.path()).expect("a stack");
+    let mut pixels = vec![Vec::new(); paths.len()];
+    while let Some(band) = stack.next().expect("a band") {
+        for (i, pixels) in pixels.iter_mut().enumerate() {
+            for row in 0..band.rows {
+                let [r, g, b] = band.row(i, row);
+                pixels.extend((0..band.width).map(|x| [r[x], g[x], b[x]]));
+            }
+        }
+    }
+    pixels
+}
+
+/// Writes a picture of each format with the same content.
+fn formats(folder: &Path) -> Vec<PathBuf> {
+    let (width, height) = (97, 61);
+    let value = |x: u32, y: u32, c: u32| ((x * 601 + y * 997 + c * 20011) % 65536) as u16;
+    let pixels: Vec<[u16; 3]> = (0..width * height)
+        .map(|i| [0, 1, 2].map(|c| value(i % width, i / width, c)))
+        .collect();
+    let png = folder.join("a.png");
+    encode::save_png_rgb16(&png, width, height, &pixels, None).expect("written");
+    let tiff = folder.join("a.tif");
+    let mut file = std::fs::File::create(&tiff).expect("a file");
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut file).expect("a TIFF");
+    encoder
+        .write_image::<tiff::encoder::colortype::RGB16>(width, height, pixels.as_flattened())
+        .expect("written");
+    drop(file);
+    let exr = folder.join("a.exr");
+    let floats: Vec<[f32; 3]> = pixels
+        .iter()
+        .map(|p| p.map(|v| f32::from(v) / 65535.0))
+        .collect();
+    encode::save_exr_rgb(&exr, width, height, &floats).expect("written");
+    vec![png, tiff, exr]
+}
+
+#[test]
+fn bands_hold_what_the_whole_picture_does() {
+    let folder = folder();
+    let paths = formats(folder.path());
+    let crop = Crop {
+        left: 5,
+        top: 7,
+        right: 90,
+        bottom: 60,
+    };
+    for encoding in [ColourEncoding::Linear, ColourEncoding::Srgb] {
+        for crop in [whole(&paths[0]), crop] {
+            let bands = in_bands(&paths, encoding, crop);
+            for (path, pixels) in paths.iter().zip(bands) {
+                let expected = at_once(path, encoding, crop);
+                assert_eq!(pixels.len(), crop.width() * crop.height());
+                assert!(pixels == expected, "{}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn real_files_are_read_in_bands_too() {
+    let Some(root) = data(test_name!(), "") else {
+        return;
+    };
+    let mut files: Vec<PathBuf> = Vec::new();
+    for folder in ["tiff", "exr/ScanLines", "exr/Chromaticities", "paper"] {
+        let entries = std::fs::read_dir(root.join(folder)).expect("a folder");
+        files.extend(entries.map(|entry| entry.expect("an entry").path()));
+    }
+    let mut read = 0;
+    for path in files {
+        if maps::verify_colour(&path, ColourEncoding::Embedded).is_err() {
+            continue;
+        }
+        let crop = whole(&path);
+        let expected = at_once(&path, ColourEncoding::Embedded, crop);
+        let found = in_bands(std::slice::from_ref(&path), ColourEncoding::Embedded, crop);
+        assert!(found[0] == expected, "{}", path.display());
+        read += 1;
+    }
+    assert!(read > 10, "{read}");
+}
+
+#[test]
+fn a_room_s_light_is_taken_away() {
+    let folder = folder();
+    let [lit, dark] = ["lit.png", "dark.png"].map(|name| folder.path().join(name));
+    encode::save_png_grey16(&lit, 8, 8, &[30_000; 64], None).expect("written");
+    encode::save_png_grey16(&dark, 8, 8, &[10_000; 64], None).expect("written");
+    let mut stack = Stack::open(
+        std::slice::from_ref(&lit),
+        Some(&dark),
+        ColourEncoding::Linear,
+        whole(&lit),
+        folder.path(),
+    )
+    .expect("a stack");
+    let band = stack.next().expect("read").expect("a band");
+    let left = band.row(0, 3)[1][3];
+    assert!((left - 20_000.0 / 65535.0).abs() < 1e-6, "{left}");
+}
+
+/// How even a grey card is once divided by itself, a lamp falling off by half over it.
+const EVEN: f32 = 2e-3;
+
+#[test]
+fn a_grey_card_takes_the_fall_off_away_and_not_its_own_noise() {
+    let folder = folder();
+    let path = folder.path().join("grey.png");
+    let (width, height) = (640u32, 400u32);
+    let light = |x: u32, y: u32| {
+        let (u, v) = (f64::from(x) / 640.0, f64::from(y) / 400.0);
+        0.6 / ((1.0 + u * u * 0.7) * (1.0 + 0.3 * v))
+    };
+    // Noise of 3 %, which must not be divided into the sheet.
+    let noise = |x: u32, y: u32| f64::from((x * 7919 + y * 104_729) % 101) / 101.0 - 0.5;
+    let pixels: Vec<u16> = (0..width * height)
+        .map(|i| {
+            let (x, y) = (i % width, i / width);
+            (65535.0 * light(x, y) * (1.0 + 0.06 * noise(x, y))).round() as u16
+        })
+        .collect();
+    encode::save_png_grey16(&path, width, height, &pixels, None).expect("written");
+    let read = || {
+        FlatField::read(
+            &path,
+            ColourEncoding::Linear,
+            whole(&path),
+            0.18,
+            folder.path(),
+        )
+    };
+    let field = read().expect("a field");
+    let mut worst = 0.0f32;
+    for y in 0..height {
+        let row: Vec<f32> = (0..width).map(|x| light(x, y) as f32).collect();
+        let mut planes = [row.clone(), row.clone(), row];
+        let [r, g, b] = &mut planes;
+        field.divide(y as usize, [r, g, b]);
+        for value in planes.as_flattened_planes() {
+            worst = worst.max((value / 0.18 - 1.0).abs());
+        }
+    }
+    assert!(worst < EVEN, "{worst}");
+
+    encode::save_png_grey16(&path, width, height, &vec![65535; pixels.len()], None)
+        .expect("written");
+    assert!(matches!(read(), Err(FlatFieldError::Saturated { .. })));
+    let mut dark = pixels;
+    for y in 0..60 {
+        dark[y * 640..y * 640 + 60].fill(20);
+    }
+    encode::save_png_grey16(&path, width, height, &dark, None).expect("written");
+    let error = read().expect_err("a dark corner").to_string();
+    assert!(
+        error.contains("grey.png") && error.contains("column"),
+        "{error}"
+    );
+}
+
+trait Planes {
+    fn as_flattened_planes(&self) -> impl Iterator<Item = f32>;
+}
+
+impl Planes for [Vec<f32>; 3] {
+    fn as_flattened_planes(&self) -> impl Iterator<Item = f32> {
+        self.iter().flatten().copied()
+    }
+}
