@@ -120,6 +120,8 @@ const MAY_IMPORT: [(&str, &[&str]); 26] = [
             "device",
             "optics::tier",
             "units",
+            // What a meter should read of the test chart.
+            "colour",
             // Tools in the hand are those of the command line.
             "readings",
             // What is exported from the window: how small a figure may be, and its table's file.

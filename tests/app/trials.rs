@@ -123,7 +123,7 @@ left_mm = 250
 desktop_px = [480, 0]
 [idle]
 seconds = 14
-countdown_seconds = 4
+countdown_seconds = 20
 chime = false
 [interface]
 reduced_motion = false
