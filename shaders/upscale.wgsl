@@ -1,7 +1,5 @@
 // The whole picture from the part of the target that was drawn, straight between its pixels.
 
-#import bevy_core_pipeline::fullscreen_vertex_shader::FullscreenVertexOutput
-
 struct Upscale {
     // Of the part and of the whole, in pixels.
     drawn: vec2<f32>,
@@ -13,8 +11,8 @@ struct Upscale {
 @group(0) @binding(2) var<uniform> upscale: Upscale;
 
 @fragment
-fn fragment(in: FullscreenVertexOutput) -> @location(0) vec4<f32> {
+fn fragment(@location(0) uv: vec2<f32>) -> @location(0) vec4<f32> {
     // Beyond the middle of its last pixels lies what an earlier frame left.
-    let at = clamp(in.uv * upscale.drawn, vec2(0.5), upscale.drawn - 0.5);
+    let at = clamp(uv * upscale.drawn, vec2(0.5), upscale.drawn - 0.5);
     return textureSampleLevel(target_texture, target_sampler, at / upscale.whole, 0.0);
 }

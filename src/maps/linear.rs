@@ -163,7 +163,7 @@ impl Converter {
             *b = responses[2].of(pixel[2]);
         }
         if let Some(matrix) = self.matrix {
-            for ((r, g), b) in (&mut *r).iter_mut().zip(&mut *g).zip(&mut *b) {
+            for ((r, g), b) in r.iter_mut().zip(&mut *g).zip(&mut *b) {
                 (*r, *g, *b) = (matrix * Vec3::new(*r, *g, *b)).into();
             }
         }

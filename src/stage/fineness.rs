@@ -63,6 +63,8 @@ impl Fineness {
 pub struct Drawn {
     part: UVec2,
     whole: UVec2,
+    /// A part is wanted, though it may be all of a small picture.
+    is_coarse: bool,
 }
 
 /// Twin of `Upscale` in the shader.
@@ -114,6 +116,7 @@ fn follow(
     let wanted = Drawn {
         part: fineness.of(whole),
         whole,
+        is_coarse: *fineness != Fineness::default(),
     };
     for (camera, drawn) in &cameras {
         if drawn == Some(&wanted) {
@@ -177,8 +180,8 @@ fn set_up(mut commands: Commands, device: Res<RenderDevice>) {
     });
 }
 
-/// A part is drawn only where it can be brought to the whole: from the first frame on, everything for that
-/// is made ready.
+/// A part is drawn only where it can be brought to the whole: as soon as one is wanted, everything for that
+/// is made ready. A picture of all pixels waits for none of it.
 fn choose(
     mut commands: Commands,
     mut pipelines: ResMut<Pipelines>,
@@ -187,6 +190,10 @@ fn choose(
     views: Query<(Entity, &ExtractedView, &Drawn), With<ExtractedCamera>>,
 ) {
     for (view, extracted, drawn) in &views {
+        if !drawn.is_coarse {
+            commands.entity(view).remove::<MainPassResolutionOverride>();
+            continue;
+        }
         let format = extracted.target_format;
         let layout = pipelines.layout.clone();
         let pipeline = *pipelines.made.entry(format).or_insert_with(|| {

@@ -118,8 +118,13 @@ pub fn furnish(app: &mut App, keeper: Keeper, wordings: Wordings) {
         together::join(app, party);
         app.insert_resource(Turn(keeper.showing()));
     }
-    app.insert_resource(keeper)
-        .add_systems(Update, keeper::keep.before(StageSet::Steer));
+    app.insert_resource(keeper).add_systems(
+        Update,
+        (
+            keeper::keep.before(StageSet::Steer),
+            keeper::tell.after(StageSet::Steer),
+        ),
+    );
 }
 
 /// One picture over all displays, in the windows of this machine.

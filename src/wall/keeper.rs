@@ -88,7 +88,7 @@ pub struct Keeper {
 /// Follows the clock, the staff and the visitors.
 pub fn keep(
     time: Res<Time<Real>>,
-    (shown, attract, arranged): (Res<Shown>, Res<Attract>, Res<Arranged>),
+    (attract, arranged): (Res<Attract>, Res<Arranged>),
     (mut keeper, mut closed, mut due): (ResMut<Keeper>, ResMut<Closed>, ResMut<AskAgain>),
     (following, told): (Option<Res<Following>>, Option<ResMut<Turn>>),
     (mut wishes, mut verdicts): (MessageReader<StaffWish>, MessageReader<Verdict>),
@@ -145,7 +145,6 @@ pub fn keep(
             told.set_if_neq(Turn(keeper.showing()));
         }
     }
-    keeper.tell(&shown, &attract, closed.0, seconds);
     let next = [keeper.change.clone(), keeper.restart.clone()];
     let next = next.into_iter().flatten().filter_map(|then| {
         let seconds = then.timestamp().as_second() - now.timestamp().as_second();
@@ -156,6 +155,15 @@ pub fn keep(
     let turn = keeper.installation.exhibits.until_next(&now);
     let again = following.and_then(|following| following.due());
     due.0 = next.chain(turn).chain(again).min();
+}
+
+/// Says how it is once the frame's touches were followed: a picture that rests is told of no more.
+pub fn tell(
+    time: Res<Time<Real>>,
+    (shown, attract, closed): (Res<Shown>, Res<Attract>, Res<Closed>),
+    mut keeper: ResMut<Keeper>,
+) {
+    keeper.tell(&shown, &attract, closed.0, time.delta_secs_f64());
 }
 
 impl Keeper {

@@ -337,7 +337,7 @@ fn a_crease_is_kept_by_the_bilateral_filter() {
 fn surfaces_are_compared_over_the_whole_and_over_patches() {
     // 240 × 160 mm at half a millimetre.
     let (width, height) = (480, 320);
-    let a = picture(width, height, |x, y| hills(x, y));
+    let a = picture(width, height, hills);
     let shifted = picture(width, height, |x, y| {
         hills(x, y) + 5.0 + 0.01 * x - 0.02 * y
     });

@@ -114,8 +114,8 @@ impl Scene {
         let mut photographs = Vec::new();
         for (lamp, l) in self.lamps.iter().enumerate() {
             let mut planes = [0, 1, 2].map(|_| vec![0.0f32; SIDE * SIDE]);
-            for i in 0..SIDE * SIDE {
-                let (x, y) = (i % SIDE, i / SIDE);
+            for (x, y) in (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE)) {
+                let i = y * SIDE + x;
                 let (px, py) = (x as f64 + 0.5, y as f64 + 0.5);
                 let n = normal(px, py);
                 let mu = n.dot(*l);

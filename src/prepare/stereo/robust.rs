@@ -58,10 +58,9 @@ fn without_extremes(lamps: &Lamps, v: &[Lane]) -> Vec<Lane> {
     for lane in 0..LANES {
         let shown = |i: usize| v[i][lane] / lamps.gain[i][lane];
         let order = |a: &usize, b: &usize| shown(*a).total_cmp(&shown(*b));
-        for out in [(0..v.len()).min_by(order), (0..v.len()).max_by(order)] {
-            if let Some(i) = out {
-                w[i][lane] = LEAST_WEIGHT;
-            }
+        let extremes = [(0..v.len()).min_by(order), (0..v.len()).max_by(order)];
+        for i in extremes.into_iter().flatten() {
+            w[i][lane] = LEAST_WEIGHT;
         }
     }
     w

@@ -118,12 +118,14 @@ pub(super) fn is_raw(path: &Path) -> bool {
     let mut start = [0; 16];
     let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
     read.is_ok()
-        && match &start {
-            [b'I', b'I', 42, 0, _, _, _, _, b'C', b'R', ..] => true,
-            [b'I', b'I', b'R', b'O' | b'S', ..] | [b'I', b'I', b'U', 0, ..] => true,
-            [b'F', b'U', b'J', b'I', b'F', b'I', b'L', b'M', ..] => true,
-            [_, _, _, _, b'f', b't', b'y', b'p', b'c', b'r', b'x', ..] => true,
-            [b'F', b'O', b'V', b'b', ..] | [0, b'M', b'R', b'M', ..] => true,
-            _ => false,
-        }
+        && matches!(
+            &start,
+            [b'I', b'I', 42, 0, _, _, _, _, b'C', b'R', ..]
+                | [b'I', b'I', b'R', b'O' | b'S', ..]
+                | [b'I', b'I', b'U', 0, ..]
+                | [b'F', b'U', b'J', b'I', b'F', b'I', b'L', b'M', ..]
+                | [_, _, _, _, b'f', b't', b'y', b'p', b'c', b'r', b'x', ..]
+                | [b'F', b'O', b'V', b'b', ..]
+                | [0, b'M', b'R', b'M', ..]
+        )
 }
