@@ -22,6 +22,7 @@ use bevy::{
         renderer::RenderDevice,
         view::screenshot::{Screenshot, ScreenshotCaptured},
     },
+    shader::ShaderCacheError,
     window::ExitCondition,
     winit::WinitPlugin,
 };
@@ -216,6 +217,7 @@ impl Darkroom {
         for _ in 0..SETTLING_FRAMES {
             self.frame()?;
         }
+        self.wait_for_shaders()?;
         self.check_pipelines()?;
         self.look(UVec2::from_array(size));
         // The legend is laid out for the new height, and a new target's first frame is empty.
@@ -254,6 +256,25 @@ impl Darkroom {
         self.look(UVec2::ONE);
         self.activate(true, true);
         picture
+    }
+
+    /// Frames until every shader that is asked for was read; on a busy machine that takes longer than maps do.
+    fn wait_for_shaders(&mut self) -> Result<(), ShotError> {
+        let begun = Instant::now();
+        while begun.elapsed() < PATIENCE && self.waits_for_shaders() {
+            self.frame()?;
+        }
+        Ok(())
+    }
+
+    fn waits_for_shaders(&self) -> bool {
+        let render = self.apps.sub_apps.get(&RenderApp.intern());
+        render.is_some_and(|render| {
+            let mut pipelines = render.world().resource::<PipelineCache>().pipelines();
+            pipelines.any(|pipeline| {
+                matches!(&pipeline.state, CachedPipelineState::Err(error) if is_on_its_way(error))
+            })
+        })
     }
 
     /// The picture of the frame that comes next.
@@ -373,12 +394,25 @@ impl Darkroom {
             return Err(ShotError::Device("there is no renderer".into()));
         };
         for pipeline in render.world().resource::<PipelineCache>().pipelines() {
-            if let CachedPipelineState::Err(error) = &pipeline.state {
-                return Err(ShotError::Device(error.to_string()));
+            match &pipeline.state {
+                // It is tried again in the next frame.
+                CachedPipelineState::Err(error) if is_on_its_way(error) => {}
+                CachedPipelineState::Err(error) => {
+                    return Err(ShotError::Device(error.to_string()));
+                }
+                _ => {}
             }
         }
         Ok(())
     }
+}
+
+/// Whether a shader, or one that it imports, is still being read.
+fn is_on_its_way(error: &ShaderCacheError) -> bool {
+    matches!(
+        error,
+        ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable
+    )
 }
 
 fn has_legend(scene: &Scene) -> bool {
