@@ -217,8 +217,7 @@ impl Darkroom {
         for _ in 0..SETTLING_FRAMES {
             self.frame()?;
         }
-        self.wait_for_shaders()?;
-        self.check_pipelines()?;
+        self.finish_pipelines()?;
         self.look(UVec2::from_array(size));
         // The legend is laid out for the new height, and a new target's first frame is empty.
         self.world().resource_mut::<Shown>().set_changed();
@@ -251,30 +250,11 @@ impl Darkroom {
             self.world().resource_mut::<Library>().wait();
             self.frame()?;
         }
-        self.check_pipelines()?;
+        self.finish_pipelines()?;
         let picture = self.capture(true);
         self.look(UVec2::ONE);
         self.activate(true, true);
         picture
-    }
-
-    /// Frames until every shader that is asked for was read; on a busy machine that takes longer than maps do.
-    fn wait_for_shaders(&mut self) -> Result<(), ShotError> {
-        let begun = Instant::now();
-        while begun.elapsed() < PATIENCE && self.waits_for_shaders() {
-            self.frame()?;
-        }
-        Ok(())
-    }
-
-    fn waits_for_shaders(&self) -> bool {
-        let render = self.apps.sub_apps.get(&RenderApp.intern());
-        render.is_some_and(|render| {
-            let mut pipelines = render.world().resource::<PipelineCache>().pipelines();
-            pipelines.any(|pipeline| {
-                matches!(&pipeline.state, CachedPipelineState::Err(error) if is_on_its_way(error))
-            })
-        })
     }
 
     /// The picture of the frame that comes next.
@@ -384,26 +364,32 @@ impl Darkroom {
         ))
     }
 
-    /// A pipeline that failed to compile draws nothing and says so only here.
+    /// Runs frames until every pipeline that was asked for is there: on a busy machine shaders are read for
+    /// longer than maps are, and one that is missing draws nothing and says so only here.
     ///
     /// # Errors
-    /// [`ShotError::Device`] with the first such fault, which may be a shader that is still being
-    /// loaded.
-    pub fn check_pipelines(&self) -> Result<(), ShotError> {
-        let Some(render) = self.apps.sub_apps.get(&RenderApp.intern()) else {
-            return Err(ShotError::Device("there is no renderer".into()));
-        };
-        for pipeline in render.world().resource::<PipelineCache>().pipelines() {
-            match &pipeline.state {
-                // It is tried again in the next frame.
-                CachedPipelineState::Err(error) if is_on_its_way(error) => {}
-                CachedPipelineState::Err(error) => {
+    /// [`ShotError::Device`] with a pipeline that cannot be made, or whose shader is not read in time.
+    pub fn finish_pipelines(&mut self) -> Result<(), ShotError> {
+        let begun = Instant::now();
+        loop {
+            let Some(render) = self.apps.sub_apps.get(&RenderApp.intern()) else {
+                return Err(ShotError::Device("there is no renderer".into()));
+            };
+            let mut waits = false;
+            for pipeline in render.world().resource::<PipelineCache>().pipelines() {
+                let CachedPipelineState::Err(error) = &pipeline.state else {
+                    continue;
+                };
+                if !is_on_its_way(error) || begun.elapsed() > PATIENCE {
                     return Err(ShotError::Device(error.to_string()));
                 }
-                _ => {}
+                waits = true;
             }
+            if !waits {
+                return Ok(());
+            }
+            self.frame()?;
         }
-        Ok(())
     }
 }
 

@@ -1,7 +1,5 @@
 //! Time of the render pass, from its own span on the graphics device.
 
-use std::time::{Duration, Instant};
-
 use bevy::{
     diagnostic::{DiagnosticPath, DiagnosticsStore},
     prelude::*,
@@ -20,9 +18,6 @@ pub const PASS: &str = "render/main_opaque_pass_3d/elapsed_gpu";
 /// Frames not counted, then counted, after each change of what is drawn.
 const WARM_UP: usize = 2;
 const FRAMES: usize = 5;
-
-/// How long the floor's shader may be on its way.
-const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Why a cost could not be measured.
 #[derive(Debug, thiserror::Error)]
@@ -71,18 +66,10 @@ impl Stopwatch {
         let mut room = room()?;
         room.arrange(shown, self.size)?;
         Floor::lay(room.world())?;
-        // A new material is prepared in the first frame, and its pipeline in the second, unless its
-        // shader is still on its way.
-        let begun = Instant::now();
-        loop {
-            room.frame()?;
-            room.frame()?;
-            match room.check_pipelines() {
-                Ok(()) => break,
-                Err(error) if begun.elapsed() > PATIENCE => return Err(error.into()),
-                Err(_) => {}
-            }
-        }
+        // A new material is prepared in the first frame, and its pipeline in the second.
+        room.frame()?;
+        room.frame()?;
+        room.finish_pipelines()?;
         spans(&mut room, WARM_UP, FRAMES)
     }
 }
