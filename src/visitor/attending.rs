@@ -46,14 +46,15 @@ pub struct Dark;
 /// Darkens the picture, or not.
 pub fn darken(
     mut commands: Commands,
-    (closed, staff): (Res<Closed>, Res<StaffPanel>),
+    (closed, staff, chart): (Res<Closed>, Res<StaffPanel>, Res<Chart>),
     cameras: Query<Entity, With<TextCamera>>,
     dark: Query<Entity, With<Dark>>,
 ) {
     let Ok(camera) = cameras.single() else {
         return;
     };
-    match (closed.0 && !staff.is_open(), dark.iter().next()) {
+    let is_dark = closed.0 && !staff.is_open() && !chart.is_shown();
+    match (is_dark, dark.iter().next()) {
         (true, None) => drop(commands.spawn((
             Dark,
             UiTargetCamera(camera),
@@ -82,7 +83,7 @@ pub fn attend(
     mut attract: ResMut<Attract>,
     (mut hand, mut interface): (ResMut<Hand>, ResMut<Interface>),
     (languages, devices, mut staff): (Res<Languages>, Res<Devices>, ResMut<StaffPanel>),
-    (house, closed, mut scan): (Res<House>, Res<Closed>, Local<f64>),
+    (house, closed, chart, mut scan): (Res<House>, Res<Closed>, Res<Chart>, Local<f64>),
     mut intents: MessageWriter<Intent>,
 ) {
     let now = time.elapsed();
@@ -100,7 +101,8 @@ pub fn attend(
     }
     // Nobody waits for a picture that is not there yet, nor for a measurement that was left half drawn.
     let at_work = !arranged.is_settled() || measuring.laying().is_some();
-    let busy = devices.is_held(now) || at_work && devices.quiet(now) < LEFT;
+    // Whoever measures the chart touches nothing.
+    let busy = chart.is_shown() || devices.is_held(now) || at_work && devices.quiet(now) < LEFT;
     let stops = hand::stops(hand.exhibit());
     let seconds = stop_seconds(&hand);
     let due = attract
@@ -140,14 +142,14 @@ pub fn stop_seconds(hand: &Hand) -> Vec<f64> {
 pub fn serve_staff(
     mut asked: MessageReader<Asked>,
     mut staff: ResMut<StaffPanel>,
-    mut chart: ResMut<Chart>,
+    (mut chart, time): (ResMut<Chart>, Res<Time<Real>>),
     mut wishes: MessageWriter<StaffWish>,
 ) {
     for asked in asked.read() {
         match asked {
             Asked::Digit(digit) => staff.digit(*digit),
             Asked::Staff(wish) => match staff.ask(*wish) {
-                Some(Staff::Chart) => chart.0 = true,
+                Some(Staff::Chart) => chart.show(time.elapsed()),
                 Some(wish) => drop(wishes.write(StaffWish(wish))),
                 None => {}
             },
@@ -190,11 +192,10 @@ pub fn read_devices(
             continue;
         }
         let event = &glass.event(event);
-        if chart.0 {
-            // The touch itself is about that alone.
-            let ends = is_touch(event) && !is_lifted(event);
-            if ends {
-                chart.0 = false;
+        if chart.is_shown() {
+            // The touch is about that alone.
+            if is_touch(event) && !is_lifted(event) {
+                chart.close();
             }
             continue;
         }

@@ -1,5 +1,7 @@
 //! The test chart: what each display should show, so that a technician with a meter sees how far it has
-//! drifted since it was measured. The staff's panel opens it, the next touch closes it.
+//! drifted since it was measured. The staff's panel opens it, also outside the opening hours; the next touch closes it.
+
+use std::time::Duration;
 
 use bevy::prelude::*;
 
@@ -28,9 +30,41 @@ const LABEL: f32 = 0.016;
 /// Level lines over all displays, which their frames must not break, as shares of the picture's height.
 const LEVELS: [f32; 3] = [0.25, 0.5, 0.75];
 
-/// Whether it is shown.
+/// One that is forgotten goes by itself, before it burns in.
+const FORGOTTEN: Duration = Duration::from_secs(900);
+
+/// Since when it is shown, while it is.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Chart(pub bool);
+pub struct Chart(Option<Duration>);
+
+impl Chart {
+    pub fn is_shown(self) -> bool {
+        self.0.is_some()
+    }
+
+    pub fn show(&mut self, now: Duration) {
+        self.0 = Some(now);
+    }
+
+    pub fn close(&mut self) {
+        self.0 = None;
+    }
+
+    /// How long it is until it goes by itself.
+    pub fn next(self, now: Duration) -> Option<Duration> {
+        self.0.map(|since| (since + FORGOTTEN).saturating_sub(now))
+    }
+}
+
+/// Takes it away where it was forgotten.
+pub fn forget(mut chart: ResMut<Chart>, time: Res<Time<Real>>) {
+    if chart
+        .next(time.elapsed())
+        .is_some_and(|left| left.is_zero())
+    {
+        chart.close();
+    }
+}
 
 /// All of it.
 #[derive(Component)]
@@ -71,7 +105,7 @@ pub fn draw(
     for entity in &charted {
         commands.entity(entity).despawn();
     }
-    let Some(camera) = cameras.iter().next().filter(|_| chart.0) else {
+    let Some(camera) = cameras.iter().next().filter(|_| chart.is_shown()) else {
         return;
     };
     let whole = Rect::from_corners(Vec2::ZERO, glass.size);

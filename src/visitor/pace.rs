@@ -67,6 +67,7 @@ pub struct Dues<'w> {
     attract: Res<'w, Attract>,
     staff: Res<'w, StaffPanel>,
     hints: Res<'w, Hints>,
+    chart: Res<'w, Chart>,
     house: Res<'w, House>,
     asked: Res<'w, AskAgain>,
     filling: Option<Res<'w, Filling>>,
@@ -86,6 +87,7 @@ impl Dues<'_> {
                 .map(Duration::from_secs_f64),
             self.staff.next(),
             self.hints.next(),
+            self.chart.next(now),
             self.house.0.scan_s.map(Duration::from_secs_f64),
             kiosk.then_some(HEARTBEAT),
             self.asked.0,
@@ -99,7 +101,7 @@ impl Dues<'_> {
 pub fn rest(
     (shown, texts, controls): (Res<Shown>, Res<Texts>, Res<Controls>),
     (interface, thumbs): (Res<Interface>, Res<Thumbs>),
-    (time, closed, chart): (Res<Time<Real>>, Res<Closed>, Res<Chart>),
+    (time, closed): (Res<Time<Real>>, Res<Closed>),
     dues: Dues,
     (arranged, library, composite): (Res<Arranged>, Res<Library>, Res<Composite>),
     (mut hand, mut pace): (ResMut<Hand>, ResMut<Pace>),
@@ -130,7 +132,7 @@ pub fn rest(
         || dues.hints.is_changed()
         || thumbs.is_changed()
         || closed.is_changed()
-        || chart.is_changed()
+        || dues.chart.is_changed()
         || hand.is_moving()
     {
         pace.left = pace.left.max(CHANGE_FRAMES);

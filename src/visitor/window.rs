@@ -237,7 +237,7 @@ impl Plugin for VisitorPlugin {
                             chime::ring,
                             attending::read_devices,
                             operate::operate,
-                            attending::serve_staff,
+                            (attending::serve_staff, chart::forget).chain(),
                         )
                             .chain()
                             .run_if(not(resource_exists::<Led>)),

@@ -11,8 +11,8 @@ use recto::{
     manifest::exhibit::SideName,
     shot::Picture,
     visitor::{
-        Attract, Chime, Doing, Hand, Manners,
-        controls::{Control, Interface, Panel, Preset},
+        Attract, Chime, Closed, Doing, Hand, Manners,
+        controls::{Control, Interface, Panel, Preset, Staff},
     },
 };
 
@@ -297,4 +297,53 @@ fn a_sheet_is_turned_round_by_two_fingers_and_set_upright() {
         "{upright}"
     );
     assert_ne!(DVec2::from_angle(upright.to_radians()), DVec2::X);
+}
+
+#[test]
+fn staff_have_a_chart_in_the_dark_too_and_it_goes_by_itself() {
+    let mut session = Session::new(Manners {
+        kiosk: true,
+        waits: Some(WAITS),
+        pin: recto::installation::Pin::new("8350").ok(),
+        ..Manners::default()
+    });
+    let ask = |session: &mut Session| {
+        let corner = Vec2::new(10.0, 10.0);
+        session.touch(9, TouchPhase::Started, corner);
+        session.wait(3.5);
+        session.lift(9, corner);
+        session.frame();
+        for digit in [8, 3, 5, 0] {
+            session.press(Control::Digit(digit));
+        }
+        session.press(Control::Staff(Staff::Chart));
+        session.frame();
+    };
+    // Pure red, where a sheet of paper has none, covers all of its patch.
+    let red = |picture: &Picture| {
+        let is_red = |texel: &&[f32; 4]| texel[0] > 0.99 && texel[1] < 0.01 && texel[3] > 0.99;
+        picture.legend.iter().filter(is_red).count() as f64 / picture.legend.len() as f64
+    };
+    let without = session.see();
+    assert_eq!(red(&without), 0.0);
+    ask(&mut session);
+    let chart = session.see();
+    keep(&chart, "chart.png");
+    assert!(red(&chart) > 0.02, "{}", red(&chart));
+    session.wait(WAITS.idle_s + WAITS.countdown_s + 5.0);
+    assert!(
+        !session.resource::<Attract>().is_touring(),
+        "it is being measured"
+    );
+    session.tap(MIDDLE);
+    assert_eq!(red(&session.see()), 0.0, "the next touch closes it");
+
+    session.world().insert_resource(Closed(true));
+    session.frame();
+    ask(&mut session);
+    assert!(red(&session.see()) > 0.02);
+    session.wait(1000.0);
+    let dark = session.see();
+    assert_eq!(red(&dark), 0.0, "forgotten");
+    assert!(covered(&dark) > 0.999, "dark again");
 }
