@@ -30,7 +30,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use schemars::generate::SchemaSettings;
 use serde_json::Value;
 
 pub use exhibits::{Every, Exhibits};
@@ -46,6 +45,7 @@ use crate::manifest::{
     decode::{Decode, Node, Report},
     document::{Document, read_text_of},
     fault,
+    shape::{self, schema_of},
 };
 use raw::RawInstallation;
 
@@ -153,28 +153,15 @@ impl Installation {
             .all(|fault| fault.severity == Severity::Warning);
         match installation {
             Some(installation) if sound => Ok((installation, faults)),
-            _ => Err(Faults::new(faults).unwrap_or_else(|| unexplained(&file).into())),
+            _ => Err(Faults::new(faults)
+                .unwrap_or_else(|| shape::unexplained(&file, "an installation").into())),
         }
     }
 }
 
-/// Stands in for a fault that validation should have reported.
-fn unexplained(file: &Path) -> Fault {
-    let words = crate::manifest::document::Words::new(
-        "an installation that cannot be used, for a reason that was not recorded",
-        "",
-        "please report this with the file",
-    );
-    words.of_file(file)
-}
-
 /// The schema that `recto schema --installation` prints.
 pub fn schema() -> Value {
-    // Editors for TOML know draft 7 best.
-    SchemaSettings::draft07()
-        .into_generator()
-        .into_root_schema_for::<RawInstallation>()
-        .to_value()
+    schema_of::<RawInstallation>()
 }
 
 /// Checks keys, types, ranges and words of an installation's text, which is what [`schema()`]
@@ -183,8 +170,5 @@ pub fn schema() -> Value {
 /// # Errors
 /// All faults of syntax, or else of shape.
 pub fn check_shape(text: &str) -> Result<(), Faults> {
-    let document = Document::parse(Path::new(INSTALLATION), text)?;
-    let mut report = Report::new(&document);
-    RawInstallation::decode(&Node::root(&document), &mut report);
-    Faults::new(report.into_faults()).map_or(Ok(()), Err)
+    shape::check::<RawInstallation>(INSTALLATION, text)
 }

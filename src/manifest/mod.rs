@@ -11,6 +11,7 @@
 //! | a hotspot's outline, and what lies inside it | [`hotspot`] |
 //! | a photograph → which of its pixels no sheet gives back | [`capture`] |
 //! | a starting manifest from one picture | [`create`] |
+//! | schema and shape of every file that people write | `shape` |
 //! | which version of a published exhibit is shown | [`published`] |
 //! | a lamp or camera in one line | `overrides::spec` |
 //! | what lies over a side, as one picture each | [`Scene::laid`], [`Overlay::load`] |
@@ -40,6 +41,7 @@ pub mod raw;
 pub mod readout;
 mod save;
 mod schema;
+pub(crate) mod shape;
 pub mod surface;
 mod validate;
 
@@ -56,7 +58,7 @@ pub use schema::schema;
 pub(crate) use validate::normalised;
 
 use decode::{Decode, Node, Report};
-use document::{Document, Words};
+use document::Document;
 use raw::RawManifest;
 
 impl Exhibit {
@@ -125,19 +127,10 @@ impl Exhibit {
                 exhibit.link = link.cloned();
                 Ok((exhibit, faults))
             }
-            _ => Err(Faults::new(faults).unwrap_or_else(|| unexplained(manifest).into())),
+            _ => Err(Faults::new(faults)
+                .unwrap_or_else(|| shape::unexplained(manifest, "an exhibit").into())),
         }
     }
-}
-
-/// Stands in for a fault that validation should have reported.
-fn unexplained(manifest: &Path) -> Fault {
-    let words = Words::new(
-        "an exhibit that cannot be used, for a reason that was not recorded",
-        "",
-        "please report this with the manifest",
-    );
-    words.of_file(manifest)
 }
 
 /// Checks keys, types, ranges and words of a manifest's text, which is what [`schema()`]
@@ -146,11 +139,5 @@ fn unexplained(manifest: &Path) -> Fault {
 /// # Errors
 /// All faults of syntax, or else of shape.
 pub fn check_shape(text: &str) -> Result<(), Faults> {
-    let document = Document::parse(Path::new(MANIFEST), text)?;
-    let mut report = Report::new(&document);
-    RawManifest::decode(&Node::root(&document), &mut report);
-    match Faults::new(report.into_faults()) {
-        Some(faults) => Err(faults),
-        None => Ok(()),
-    }
+    shape::check::<RawManifest>(MANIFEST, text)
 }

@@ -18,7 +18,6 @@ pub mod values;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
-use schemars::generate::SchemaSettings;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -26,8 +25,9 @@ use crate::{
     manifest::{
         Fault, Faults, Severity, SideName,
         decode::{Decode, Node, Report},
-        document::{Document, Words, read_text_of},
+        document::{Document, read_text_of},
         fault,
+        shape::{self, schema_of},
     },
     maps::ColourEncoding,
     optics::{medium::MediumId, spectrum::Illuminant},
@@ -268,28 +268,17 @@ impl Capture {
             .all(|fault| fault.severity == Severity::Warning);
         match capture {
             Some(capture) if sound => Ok((capture, faults)),
-            _ => Err(Faults::new(faults).unwrap_or_else(|| unexplained(file).into())),
+            _ => {
+                Err(Faults::new(faults)
+                    .unwrap_or_else(|| shape::unexplained(file, "a capture").into()))
+            }
         }
     }
 }
 
-/// Stands in for a fault that validation should have reported.
-fn unexplained(file: &Path) -> Fault {
-    let words = Words::new(
-        "a capture that cannot be used, for a reason that was not recorded",
-        "",
-        "please report this with the file",
-    );
-    words.of_file(file)
-}
-
 /// The schema that `recto schema --capture` prints.
 pub fn schema() -> Value {
-    // Editors for TOML know draft 7 best.
-    SchemaSettings::draft07()
-        .into_generator()
-        .into_root_schema_for::<RawCapture>()
-        .to_value()
+    schema_of::<RawCapture>()
 }
 
 /// Checks keys, types, ranges and words of a capture's text, which is what [`schema()`]
@@ -298,8 +287,5 @@ pub fn schema() -> Value {
 /// # Errors
 /// All faults of syntax, or else of shape.
 pub fn check_shape(text: &str) -> Result<(), Faults> {
-    let document = Document::parse(Path::new(CAPTURE), text)?;
-    let mut report = Report::new(&document);
-    RawCapture::decode(&Node::root(&document), &mut report);
-    Faults::new(report.into_faults()).map_or(Ok(()), Err)
+    shape::check::<RawCapture>(CAPTURE, text)
 }

@@ -11,6 +11,7 @@
 
 use rayon::prelude::*;
 
+use super::transform::transposed;
 use crate::prepare::capture::Filter;
 
 /// Boxes that make a Gaussian: four of them are within 0.3 % of it.
@@ -220,25 +221,6 @@ fn boxed(line: &mut [[f32; 3]], (radius, share): (usize, f32), buffer: &mut Vec<
             sum[c] += f64::from(after[c]) - f64::from(gone[c]);
         }
     }
-}
-
-fn transposed(picture: &[[f32; 3]], width: usize) -> Vec<[f32; 3]> {
-    const TILE: usize = 32;
-    let height = picture.len() / width;
-    let mut turned = vec![[0.0; 3]; picture.len()];
-    turned
-        .par_chunks_mut(height * TILE)
-        .enumerate()
-        .for_each(|(tile, columns)| {
-            for top in (0..height).step_by(TILE) {
-                for (x, column) in columns.chunks_exact_mut(height).enumerate() {
-                    for y in top..(top + TILE).min(height) {
-                        column[y] = picture[y * width + tile * TILE + x];
-                    }
-                }
-            }
-        });
-    turned
 }
 
 /// Vectors smoothed among those alike (Tomasi & Manduchi 1998).

@@ -172,11 +172,11 @@ fn along_rows(picture: &mut [f64], width: usize, line: &Line, back: bool) {
 }
 
 /// A picture of `width` with rows and columns exchanged.
-fn transposed(picture: &[f64], width: usize) -> Vec<f64> {
+pub(super) fn transposed<T: Copy + Default + Send + Sync>(picture: &[T], width: usize) -> Vec<T> {
     /// Of what is exchanged at once, so that both sides stay in a cache.
     const TILE: usize = 32;
     let height = picture.len() / width;
-    let mut turned = vec![0.0; picture.len()];
+    let mut turned = vec![T::default(); picture.len()];
     turned
         .par_chunks_mut(height * TILE)
         .enumerate()

@@ -6,7 +6,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{super::values::CapturePath, Validator};
+use super::{
+    super::{raw::RawFrames, values::CapturePath},
+    Validator,
+};
 use crate::{
     manifest::{
         Pattern,
@@ -31,6 +34,24 @@ impl Validator<'_, '_> {
     /// A path as the program opens it.
     pub(super) fn path(&self, path: &CapturePath) -> PathBuf {
         self.folder.join(path.as_str())
+    }
+
+    /// The files of a list, and the size that all of them and `like` have.
+    pub(super) fn photographs(
+        &mut self,
+        list: &RawFrames,
+        key: &Trail,
+        like: Option<([u32; 2], &Path)>,
+    ) -> (Vec<PathBuf>, Option<[u32; 2]>) {
+        let named = list.iter();
+        let named = named.map(|(i, path)| (self.path(path), key.index(i)));
+        let files: Vec<(PathBuf, Trail)> = named.collect();
+        let of: Vec<_> = files
+            .iter()
+            .map(|(path, trail)| (path, trail.clone()))
+            .collect();
+        let size = self.same_size(&of, like);
+        (files.into_iter().map(|(path, _)| path).collect(), size)
     }
 
     /// The size in pixels that all these files have, and that of `like` where there is one; says

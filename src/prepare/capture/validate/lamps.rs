@@ -177,20 +177,12 @@ impl Validator<'_, '_> {
         let mut sound = true;
         if let Some(list) = frames {
             sound = !list.has_holes();
-            let files: Vec<(PathBuf, Trail)> = list
-                .iter()
-                .map(|(i, path)| (self.path(path), key.index(i)))
-                .collect();
-            let of: Vec<_> = files
-                .iter()
-                .map(|(path, trail)| (path, trail.clone()))
-                .collect();
-            let size = self.same_size(&of, None);
+            let (files, size) = self.photographs(list, &key, None);
             if let (Some(size), Some(circle)) = (size, raw.circle_px) {
                 sound &= self.inside(circle.map(|px| px.0), size, &trail.key("circle_px"));
             }
             sound &= size.is_some();
-            photographs = files.into_iter().map(|(path, _)| path).collect();
+            photographs = files;
         }
         let circle = raw.circle_px.map(|px| {
             let [x, y, radius] = px.map(|px| px.0);
@@ -281,20 +273,12 @@ impl Validator<'_, '_> {
         if let Some(list) = &raw.flat_field {
             let key = trail.key("flat_field");
             let many = self.as_many(list.len(), count, "photographs of a grey card", &key);
-            let files: Vec<(PathBuf, Trail)> = list
-                .iter()
-                .map(|(i, path)| (self.path(path), key.index(i)))
-                .collect();
-            let of: Vec<_> = files
-                .iter()
-                .map(|(path, trail)| (path, trail.clone()))
-                .collect();
             let like = recto.map(|recto| (recto.size, recto.photographs[0].as_path()));
-            let size = self.same_size(&of, like);
+            let (photographs, size) = self.photographs(list, &key, like);
             many?;
             size?;
             return (!list.has_holes()).then_some(Light::FlatField {
-                photographs: files.into_iter().map(|(path, _)| path).collect(),
+                photographs,
                 reflectance: raw.grey_card.map_or(GREY_CARD, |card| card.0),
             });
         }
