@@ -1,7 +1,21 @@
-//! Whether there is a display, found out before the window system's library would panic for
-//! want of one.
+//! The display: whether there is one, found out before the window system's library would panic for want of
+//! one, a window on it, and what becomes of that when it is switched off.
 
-use std::ffi::OsStr;
+use std::{
+    any::Any,
+    ffi::OsStr,
+    panic::{self, AssertUnwindSafe},
+};
+
+use bevy::{
+    ecs::relationship::RelationshipTarget,
+    log::{Level, LogPlugin},
+    prelude::*,
+    render::RenderPlugin,
+    window::{ExitCondition, HasWindows, Monitor},
+};
+
+use crate::device;
 
 /// No display that a window could open on.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -10,7 +24,7 @@ use std::ffi::OsStr;
      or Ubuntu `xvfb-run recto show …` opens the window on a virtual one"
 )]
 pub struct NoDisplay {
-    pub(super) reason: String,
+    reason: String,
 }
 
 /// Looks for the display that a window will open on.
@@ -30,6 +44,56 @@ pub fn probe() -> Result<(), NoDisplay> {
         None => Err(NoDisplay {
             reason: "DISPLAY is not set".into(),
         }),
+    }
+}
+
+/// Opens a window. The window system's library panics where a display answers but cannot be used, such as
+/// where its own libraries are missing.
+///
+/// # Errors
+/// [`NoDisplay`] with what it said then.
+pub fn open(app: &mut App, window: Window) -> Result<(), NoDisplay> {
+    let plugins = DefaultPlugins
+        .set(WindowPlugin {
+            primary_window: Some(window),
+            exit_condition: ExitCondition::DontExit,
+            // A public wall would stay without its window, and a desk ends by itself.
+            close_when_requested: false,
+            ..default()
+        })
+        .set(RenderPlugin {
+            render_creation: device::render_creation(),
+            // A pipeline that compiles behind the scenes leaves the table empty meanwhile.
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
+        .set(LogPlugin {
+            level: Level::ERROR,
+            filter: String::new(),
+            ..default()
+        });
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let opened = panic::catch_unwind(AssertUnwindSafe(|| {
+        app.add_plugins(plugins);
+    }));
+    panic::set_hook(hook);
+    opened.map_err(|words| NoDisplay {
+        reason: reason(&*words),
+    })
+}
+
+fn reason(panic: &(dyn Any + Send)) -> String {
+    let words = panic.downcast_ref::<String>().cloned();
+    words
+        .or_else(|| panic.downcast_ref::<&str>().map(|&words| words.into()))
+        .unwrap_or_else(|| "the window system refused".into())
+}
+
+/// A display that is switched off would take its windows with it.
+pub fn outlive(display: On<Despawn, Monitor>, mut displays: Query<&mut HasWindows>) {
+    if let Ok(mut windows) = displays.get_mut(display.entity) {
+        windows.collection_mut_risky().clear();
     }
 }
 
@@ -90,6 +154,8 @@ fn connects(_: &str, _: u16) -> bool {
 
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
+    use bevy::window::OnMonitor;
+
     use super::*;
 
     #[test]
@@ -102,5 +168,25 @@ mod tests {
             let error = answers(OsStr::new(display)).expect_err(display);
             assert!(error.to_string().contains(words), "{error}");
         }
+    }
+
+    #[test]
+    fn a_window_outlives_its_display() {
+        let mut world = World::new();
+        world.add_observer(outlive);
+        let monitor = world
+            .spawn(Monitor {
+                name: None,
+                physical_height: 1080,
+                physical_width: 1920,
+                physical_position: IVec2::ZERO,
+                refresh_rate_millihertz: None,
+                scale_factor: 1.0,
+                video_modes: Vec::new(),
+            })
+            .id();
+        let window = world.spawn((Window::default(), OnMonitor(monitor))).id();
+        world.entity_mut(monitor).despawn();
+        assert!(world.get_entity(window).is_ok());
     }
 }

@@ -1,8 +1,6 @@
 //! The window: opens, and follows the hand.
 
 use std::{
-    any::Any,
-    panic::{self, AssertUnwindSafe},
     path::PathBuf,
     sync::{
         Arc,
@@ -13,13 +11,11 @@ use std::{
 
 use bevy::{
     core_pipeline::{Core3d, Core3dSystems},
-    ecs::relationship::RelationshipTarget,
-    log::{Level, LogPlugin},
     prelude::*,
-    render::{RenderApp, RenderPlugin, renderer::RenderAdapterInfo},
+    render::{RenderApp, renderer::RenderAdapterInfo},
     window::{
-        CursorOptions, ExitCondition, HasWindows, Monitor, MonitorSelection, OnMonitor,
-        PrimaryWindow, WindowCloseRequested, WindowMode, WindowResolution,
+        CursorOptions, Monitor, MonitorSelection, OnMonitor, PrimaryWindow, WindowCloseRequested,
+        WindowMode, WindowResolution,
     },
     winit::{EventLoopProxyWrapper, WinitSettings, WinitUserEvent},
 };
@@ -43,6 +39,7 @@ use super::{
         operate::{self, Asked},
         thumbs::{self, Thumbs},
     },
+    display,
     export::{self, Exports},
     filling::{self, Filling},
     foresight::{Foresight, foresee},
@@ -65,7 +62,6 @@ use super::{
     tools,
 };
 use crate::{
-    device,
     manifest::exhibit::Exhibit,
     stage::{
         Arranged, Library, Shown, StagePlugin, StageSet, Waker,
@@ -103,13 +99,20 @@ pub fn run(
     furnish: impl FnOnce(&mut App),
 ) -> Result<u8, NoDisplay> {
     let mut app = App::new();
-    open(&mut app, &exhibit, options)?;
+    let size = options.size.unwrap_or(SIZE);
+    let window = Window {
+        title: title(&exhibit),
+        resolution: WindowResolution::new(size[0], size[1]),
+        mode: mode(options.fullscreen),
+        ..default()
+    };
+    display::open(&mut app, window)?;
     let proxy = (**app.world().resource::<EventLoopProxyWrapper>()).clone();
     // The loop is gone when the program is closing: nobody is left to wake.
     let wake = move || {
         let _ = proxy.send_event(WinitUserEvent::WakeUp);
     };
-    let [width, height] = options.size.unwrap_or(SIZE).map(f64::from);
+    let [width, height] = size.map(f64::from);
     let picture = Picture {
         aspect: width / height,
         width_mm: width * MM_PER_INCH / PPI,
@@ -142,7 +145,7 @@ pub fn run(
         ))
         .init_resource::<Filling>()
         .add_systems(Update, filling::fill)
-        .add_observer(outlive_display)
+        .add_observer(display::outlive)
         .add_systems(Startup, (without_clusters, suit_device, set_up));
     count_frames(&mut app);
     furnish(&mut app);
@@ -278,53 +281,6 @@ impl Plugin for VisitorPlugin {
     }
 }
 
-/// The window system's library panics where a display answers but cannot be used, such as
-/// where its own libraries are missing.
-fn open(app: &mut App, exhibit: &Exhibit, options: &ShowOptions) -> Result<(), NoDisplay> {
-    let [width, height] = options.size.unwrap_or(SIZE);
-    let window = Window {
-        title: title(exhibit),
-        resolution: WindowResolution::new(width, height),
-        mode: mode(options.fullscreen),
-        ..default()
-    };
-    let plugins = DefaultPlugins
-        .set(WindowPlugin {
-            primary_window: Some(window),
-            exit_condition: ExitCondition::DontExit,
-            // A public wall would stay without its window, and a desk ends by itself.
-            close_when_requested: false,
-            ..default()
-        })
-        .set(RenderPlugin {
-            render_creation: device::render_creation(),
-            // A pipeline that compiles behind the scenes leaves the table empty meanwhile.
-            synchronous_pipeline_compilation: true,
-            ..default()
-        })
-        .set(LogPlugin {
-            level: Level::ERROR,
-            filter: String::new(),
-            ..default()
-        });
-    let hook = panic::take_hook();
-    panic::set_hook(Box::new(|_| {}));
-    let opened = panic::catch_unwind(AssertUnwindSafe(|| {
-        app.add_plugins(plugins);
-    }));
-    panic::set_hook(hook);
-    opened.map_err(|words| NoDisplay {
-        reason: reason(&*words),
-    })
-}
-
-fn reason(panic: &(dyn Any + Send)) -> String {
-    let words = panic.downcast_ref::<String>().cloned();
-    words
-        .or_else(|| panic.downcast_ref::<&str>().map(|&words| words.into()))
-        .unwrap_or_else(|| "the window system refused".into())
-}
-
 fn mode(fullscreen: bool) -> WindowMode {
     if fullscreen {
         // Exclusive full screen does not survive a display that goes away.
@@ -352,13 +308,6 @@ fn set_up(mut commands: Commands) {
             foot: 0.0,
         },
     ));
-}
-
-/// A display that is switched off would take its windows with it.
-fn outlive_display(display: On<Despawn, Monitor>, mut displays: Query<&mut HasWindows>) {
-    if let Ok(mut windows) = displays.get_mut(display.entity) {
-        windows.collection_mut_risky().clear();
-    }
 }
 
 /// Names the window after the exhibit.
@@ -601,29 +550,4 @@ fn count_frames(app: &mut App) {
             std::thread::sleep(FRAME_LOG_PERIOD);
         }
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_window_outlives_its_display() {
-        let mut world = World::new();
-        world.add_observer(outlive_display);
-        let monitor = world
-            .spawn(Monitor {
-                name: None,
-                physical_height: 1080,
-                physical_width: 1920,
-                physical_position: IVec2::ZERO,
-                refresh_rate_millihertz: None,
-                scale_factor: 1.0,
-                video_modes: Vec::new(),
-            })
-            .id();
-        let window = world.spawn((Window::default(), OnMonitor(monitor))).id();
-        world.entity_mut(monitor).despawn();
-        assert!(world.get_entity(window).is_ok());
-    }
 }
