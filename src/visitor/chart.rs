@@ -89,7 +89,12 @@ fn label(code: [u8; 3]) -> String {
         true => r.to_string(),
         false => format!("{r} {g} {b}"),
     };
-    format!("{code}\n{:.2} %\nx {x:.4} y {y:.4}", 100.0 * luminance)
+    let percent = 100.0 * luminance;
+    match luminance > 0.0 {
+        true => format!("{code}\n{percent:.2} %\nx {x:.4}\ny {y:.4}"),
+        // Black has no colour.
+        false => format!("{code}\n{percent:.2} %"),
+    }
 }
 
 /// Draws it over everything, or takes it away.
@@ -121,13 +126,14 @@ pub fn draw(
         BackgroundColor(Color::BLACK),
     );
     commands.spawn(root).with_children(|root| {
-        for pane in panes {
-            lay(root, pane);
-        }
+        // Under the patches: a meter is to see nothing else.
         for level in LEVELS {
             let y = (level * glass.size.y).round();
             let line = Rect::new(0.0, y, glass.size.x, y + 1.0);
             root.spawn((at(line), BackgroundColor(Color::srgb_u8(96, 96, 96))));
+        }
+        for pane in panes {
+            lay(root, pane);
         }
     });
 }
@@ -206,6 +212,6 @@ mod tests {
                 "{code:?}"
             );
         }
-        assert!(label([0; 3]).starts_with("0\n0.00 %"));
+        assert_eq!(label([0; 3]), "0\n0.00 %");
     }
 }
