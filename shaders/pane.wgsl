@@ -7,6 +7,8 @@ struct Pane {
     part: vec4<f32>,
     // From linear sRGB to the light of the display's channels.
     rows: mat3x4<f32>,
+    // Whether the display's values stand in the table, and nothing in the rows and the tone.
+    has_table: u32,
 }
 
 @group(1) @binding(0) var<uniform> pane: Pane;
@@ -14,6 +16,9 @@ struct Pane {
 @group(1) @binding(2) var picture_sampler: sampler;
 // Of each channel, over the square root of its light: what the surface has to be given, linear.
 @group(1) @binding(3) var tone: texture_2d<f32>;
+// The display's values over the square roots of red, green and blue light.
+@group(1) @binding(4) var table: texture_3d<f32>;
+@group(1) @binding(5) var table_sampler: sampler;
 
 fn toned(light: vec3<f32>) -> vec3<f32> {
     let last = f32(textureDimensions(tone).x - 1u);
@@ -29,10 +34,21 @@ fn toned(light: vec3<f32>) -> vec3<f32> {
     );
 }
 
+// What the surface has to be given, linear, so that the table's values come out.
+fn looked_up(light: vec3<f32>) -> vec3<f32> {
+    let steps = vec3<f32>(textureDimensions(table));
+    let place = sqrt(clamp(light, vec3(0.0), vec3(1.0)));
+    let value = textureSampleLevel(table, table_sampler, (place * (steps - 1.0) + 0.5) / steps, 0.0).rgb;
+    return select(pow((value + 0.055) / 1.055, vec3(2.4)), value / 12.92, value <= vec3(0.04045));
+}
+
 @fragment
 fn fragment(in: UiVertexOutput) -> @location(0) vec4<f32> {
     let uv = mix(pane.part.xy, pane.part.zw, in.uv);
     let seen = textureSample(picture, picture_sampler, uv).rgb;
+    if pane.has_table != 0u {
+        return vec4(looked_up(seen), 1.0);
+    }
     let light = seen * mat3x3<f32>(pane.rows[0].xyz, pane.rows[1].xyz, pane.rows[2].xyz);
     return vec4(toned(light), 1.0);
 }

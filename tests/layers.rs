@@ -143,6 +143,9 @@ const MAY_IMPORT: [(&str, &[&str]); 26] = [
             "colour",
             "installation",
             "manifest",
+            // A display's own values.
+            "maps::LATTICE_STEPS",
+            "maps::Lattice",
             "stage",
             "visitor",
             "wording",

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 
 use crate::{
     colour::{self, SRGB_PRIMARIES, srgb_encode},
-    maps::DisplayProfile,
+    maps::{DisplayProfile, Lattice},
 };
 
 /// How a display shows colours.
@@ -42,12 +42,18 @@ pub enum Tone {
 }
 
 /// From linear sRGB to a display's values.
+/// White stays the white of sRGB, whatever the display's own is: the channel that has too much of it
+/// is dimmed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Correction {
-    /// From linear sRGB to the light of the display's channels, 0 to 1. White stays the white of
-    /// sRGB, whatever the display's own is: the channel that has too much of it is dimmed.
-    pub matrix: DMat3,
-    pub tone: [Tone; 3],
+pub enum Correction {
+    /// Each channel by itself.
+    Curves {
+        /// From linear sRGB to the light of the display's channels, 0 to 1.
+        matrix: DMat3,
+        tone: [Tone; 3],
+    },
+    /// All channels at once.
+    Table(Lattice),
 }
 
 impl Profile {
@@ -65,10 +71,9 @@ impl Profile {
     pub fn correction(&self) -> Correction {
         let (xyz_from_device, tone) = match self {
             Self::Srgb => {
-                let tone = [Tone::Srgb, Tone::Srgb, Tone::Srgb];
-                return Correction {
+                return Correction::Curves {
                     matrix: DMat3::IDENTITY,
-                    tone,
+                    tone: [Tone::Srgb, Tone::Srgb, Tone::Srgb],
                 };
             }
             Self::Measured {
@@ -77,14 +82,17 @@ impl Profile {
                 colour::xyz_from_rgb_matrix(SRGB_PRIMARIES, *white_xy),
                 [0; 3].map(|_| Tone::Power(*gamma)),
             ),
-            Self::Icc { display, .. } => (
-                display.xyz_from_device,
-                display.tone.clone().map(Tone::Table),
-            ),
+            Self::Icc { display, .. } => match &**display {
+                DisplayProfile::Curves {
+                    xyz_from_device,
+                    tone,
+                } => (*xyz_from_device, tone.clone().map(Tone::Table)),
+                DisplayProfile::Table(lattice) => return Correction::Table(lattice.clone()),
+            },
         };
         let matrix = xyz_from_device.inverse() * colour::linear_from_xyz_matrix().inverse();
         let brightest = (matrix * DVec3::ONE).max_element();
-        Correction {
+        Correction::Curves {
             matrix: matrix * brightest.recip(),
             tone,
         }
@@ -94,9 +102,13 @@ impl Profile {
 impl Correction {
     /// The display's values, 0 to 1, for a colour in linear sRGB; what it cannot show is clamped.
     pub fn encode(&self, linear: [f64; 3]) -> [f64; 3] {
-        let light = (self.matrix * DVec3::from(linear)).clamp(DVec3::ZERO, DVec3::ONE);
-        let light: [f64; 3] = light.into();
-        [0, 1, 2].map(|k| self.tone[k].value(light[k]))
+        match self {
+            Self::Curves { matrix, tone } => {
+                let light = (*matrix * DVec3::from(linear)).clamp(DVec3::ZERO, DVec3::ONE);
+                [0, 1, 2].map(|k| tone[k].value(light[k]))
+            }
+            Self::Table(lattice) => lattice.encode(linear),
+        }
     }
 }
 

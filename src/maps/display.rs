@@ -2,10 +2,10 @@
 
 use std::{fs::File, io::Read, path::Path};
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Mat3};
 use moxcms::ColorProfile;
 
-use super::{MapError, icc::Profile};
+use super::{MapError, icc::Profile, lattice::Lattice};
 use crate::colour;
 
 /// Samples of each tone curve; between them it is straight, which at 8 bits cannot be told.
@@ -19,19 +19,23 @@ const MOST_BYTES: u64 = 16 << 20;
 
 /// What a display does with its values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DisplayProfile {
-    /// From linear device values to CIE XYZ, Y = 1 for the display's white; not adapted.
-    pub xyz_from_device: DMat3,
-    /// The light of each channel, 0 to 1, at equal steps of its value from 0 to 1; never falling.
-    pub tone: [Vec<f64>; 3],
+pub enum DisplayProfile {
+    /// Each channel by itself.
+    Curves {
+        /// From linear device values to CIE XYZ, Y = 1 for the display's white; not adapted.
+        xyz_from_device: DMat3,
+        /// The light of each channel, 0 to 1, at equal steps of its value from 0 to 1; never falling.
+        tone: [Vec<f64>; 3],
+    },
+    /// As a table says, in which channels may act upon each other.
+    Table(Lattice),
 }
 
 impl DisplayProfile {
     /// Reads a profile file (`.icc`) of a display.
     ///
     /// # Errors
-    /// [`MapError::Read`], or [`MapError::Profile`] if it is broken, of something else than RGB,
-    /// or made of tables instead of curves and primaries.
+    /// [`MapError::Read`], or [`MapError::Profile`] if it is broken or of something else than RGB.
     pub fn read(path: &Path) -> Result<Self, MapError> {
         let unreadable = |reason| MapError::Read {
             path: path.to_owned(),
@@ -43,16 +47,18 @@ impl DisplayProfile {
             .map_err(unreadable)?;
         let Profile {
             curves,
-            table: None,
-            matrix: Some(matrix),
-        } = Profile::read(path, &bytes, 3)?
-        else {
-            let detail = "it is made of tables; a display's has three curves and three primaries";
-            return Err(MapError::profile(path, detail));
-        };
+            table,
+            matrix,
+        } = Profile::read(path, &bytes, 3)?;
+        let matrix = matrix.unwrap_or(Mat3::IDENTITY).as_dmat3();
         let header =
             ColorProfile::new_from_slice(&bytes).map_err(|error| MapError::profile(path, error))?;
         let white = white(&header);
+        if let Some(table) = table {
+            let lattice = Lattice::invert(&*table, matrix, white);
+            let lattice = lattice.map_err(|detail| MapError::profile(path, detail))?;
+            return Ok(Self::Table(lattice));
+        }
         let tone = |k: usize| -> Option<Vec<f64>> {
             let curve = curves.get(k)?;
             let mut level: f64 = 0.0;
@@ -67,11 +73,11 @@ impl DisplayProfile {
         let (Some(red), Some(green), Some(blue)) = (tone(0), tone(1), tone(2)) else {
             return Err(MapError::profile(path, "a channel gives no light"));
         };
-        Ok(Self {
+        Ok(Self::Curves {
             // The profile's colours are adapted to D50, and `matrix` adapts them on to D65.
             xyz_from_device: colour::bradford(colour::D65, white)
                 * colour::linear_from_xyz_matrix().inverse()
-                * matrix.as_dmat3(),
+                * matrix,
             tone: [red, green, blue],
         })
     }

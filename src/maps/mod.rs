@@ -26,6 +26,7 @@ pub mod encode;
 mod error;
 mod header;
 mod icc;
+mod lattice;
 mod legend;
 mod linear;
 mod load;
@@ -46,6 +47,7 @@ pub use bare::{bare_albedo, mean_of};
 pub use display::DisplayProfile;
 pub use error::MapError;
 pub use header::{Header, probe, verify, verify_colour};
+pub use lattice::{LATTICE_STEPS, Lattice};
 pub use legend::{
     ColourCounts, LegendMap, MAX_WEIGHTS, load_media_legend, load_media_weights,
     load_overlay_categorical, load_overlay_continuous, verify_legend,

@@ -150,13 +150,8 @@ fn hang(app: &mut App, wall: &Wall, machine: Option<&Machine>) {
             .iter()
             .map(|pane| {
                 let correction = wall.displays[pane.display].profile.correction();
-                let tone = panes::tone(&correction);
-                let tone = world.resource_mut::<Assets<Image>>().add(tone);
-                let material = PaneMaterial {
-                    pane: panes::uniform(pane, &correction),
-                    picture: picture.clone(),
-                    tone,
-                };
+                let images = &mut world.resource_mut::<Assets<Image>>();
+                let material = panes::material(images, &picture, pane, &correction);
                 let materials = &mut world.resource_mut::<Assets<PaneMaterial>>();
                 (pane.clone(), materials.add(material))
             })

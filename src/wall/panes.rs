@@ -7,6 +7,7 @@ use bevy::{
     asset::{RenderAssetUsages, io::embedded::EmbeddedAssetRegistry},
     camera::RenderTarget,
     core_pipeline::tonemapping::Tonemapping,
+    image::ImageSampler,
     prelude::*,
     render::render_resource::{
         AsBindGroup, Extent3d, ShaderType, TextureDimension, TextureFormat, TextureUsages,
@@ -14,11 +15,12 @@ use bevy::{
     shader::ShaderRef,
     window::{WindowMode, WindowPosition, WindowRef, WindowResolution},
 };
-use glam::DVec2;
+use glam::{DMat3, DVec2};
 
 use crate::{
     colour::srgb_decode,
-    installation::{Correction, Pane, Wall},
+    installation::{Correction, Pane, Tone, Wall},
+    maps::{LATTICE_STEPS, Lattice},
 };
 
 /// Steps of a tone curve.
@@ -50,6 +52,9 @@ pub struct PaneMaterial {
     pub picture: Handle<Image>,
     #[texture(3, sample_type = "float", filterable = false)]
     pub tone: Handle<Image>,
+    #[texture(4, dimension = "3d")]
+    #[sampler(5)]
+    pub table: Handle<Image>,
 }
 
 /// Twin of `Pane` in the shader.
@@ -57,6 +62,7 @@ pub struct PaneMaterial {
 pub struct PaneUniform {
     pub part: Vec4,
     pub rows: [Vec4; 3],
+    pub has_table: u32,
 }
 
 impl UiMaterial for PaneMaterial {
@@ -92,39 +98,89 @@ pub fn picture(size: UVec2) -> Image {
     image
 }
 
+/// What shows a part of `picture` on a display.
+pub fn material(
+    images: &mut Assets<Image>,
+    picture: &Handle<Image>,
+    pane: &Pane,
+    correction: &Correction,
+) -> PaneMaterial {
+    let identity = [Tone::Srgb, Tone::Srgb, Tone::Srgb];
+    let (matrix, tone, table) = match correction {
+        Correction::Curves { matrix, tone } => (*matrix, tone, blank_table()),
+        Correction::Table(lattice) => (DMat3::IDENTITY, &identity, table_image(lattice)),
+    };
+    let part = [pane.of_picture.min, pane.of_picture.max].map(DVec2::as_vec2);
+    PaneMaterial {
+        pane: PaneUniform {
+            part: Vec4::new(part[0].x, part[0].y, part[1].x, part[1].y),
+            rows: [0, 1, 2].map(|k| matrix.row(k).as_vec3().extend(0.0)),
+            has_table: u32::from(matches!(correction, Correction::Table(_))),
+        },
+        picture: picture.clone(),
+        tone: images.add(tone_image(tone)),
+        table: images.add(table),
+    }
+}
+
 /// What a display with an sRGB surface is given for each light, so that its own values come out.
-pub fn tone(correction: &Correction) -> Image {
+fn tone_image(tone: &[Tone; 3]) -> Image {
     let mut bytes = Vec::with_capacity(STEPS as usize * 16);
     for step in 0..STEPS {
         let light = (f64::from(step) / f64::from(STEPS - 1)).powi(2);
-        for tone in &correction.tone {
+        for tone in tone {
             bytes.extend((srgb_decode(tone.value(light)) as f32).to_le_bytes());
         }
         bytes.extend(1f32.to_le_bytes());
     }
-    let extent = Extent3d {
-        width: STEPS,
-        height: 1,
-        depth_or_array_layers: 1,
-    };
-    let usage = RenderAssetUsages::RENDER_WORLD;
-    Image::new(
-        extent,
+    let size = [STEPS, 1, 1];
+    texture(
+        size,
         TextureDimension::D2,
         bytes,
         TextureFormat::Rgba32Float,
-        usage,
     )
 }
 
-/// The uniform of a pane.
-pub fn uniform(pane: &Pane, correction: &Correction) -> PaneUniform {
-    let part = [pane.of_picture.min, pane.of_picture.max].map(DVec2::as_vec2);
-    let matrix = correction.matrix;
-    PaneUniform {
-        part: Vec4::new(part[0].x, part[0].y, part[1].x, part[1].y),
-        rows: [0, 1, 2].map(|k| matrix.row(k).as_vec3().extend(0.0)),
-    }
+/// The values of a display over the square roots of light.
+fn table_image(lattice: &Lattice) -> Image {
+    let texels = lattice.values.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]);
+    let halves = texels.flatten().map(half::f16::from_f32);
+    table_of(
+        LATTICE_STEPS as u32,
+        halves.flat_map(half::f16::to_le_bytes).collect(),
+    )
+}
+
+/// In the place of a table that nobody reads.
+fn blank_table() -> Image {
+    table_of(1, vec![0; 8])
+}
+
+fn table_of(steps: u32, bytes: Vec<u8>) -> Image {
+    let mut image = texture(
+        [steps; 3],
+        TextureDimension::D3,
+        bytes,
+        TextureFormat::Rgba16Float,
+    );
+    image.sampler = ImageSampler::linear();
+    image
+}
+
+fn texture(
+    [width, height, depth_or_array_layers]: [u32; 3],
+    dimension: TextureDimension,
+    bytes: Vec<u8>,
+    format: TextureFormat,
+) -> Image {
+    let extent = Extent3d {
+        width,
+        height,
+        depth_or_array_layers,
+    };
+    let usage = RenderAssetUsages::RENDER_WORLD;
+    Image::new(extent, dimension, bytes, format, usage)
 }
 
 /// The window over some displays, without a frame, where it lies on the desktop.

@@ -15,6 +15,7 @@ use bevy::{
 use glam::DVec2;
 use recto::{
     installation::{Display, PixelRect, Profile, Rect as WallRect, Wall, Windows},
+    maps::{DisplayProfile, LATTICE_STEPS, Lattice},
     shot::Darkroom,
     wall::panes::{self, PaneMaterial, PanesPlugin},
 };
@@ -45,14 +46,39 @@ fn display(left: u32, profile: Profile) -> Display {
     }
 }
 
-fn wall() -> Wall {
-    let measured = Profile::Measured {
+fn measured() -> Profile {
+    Profile::Measured {
         white_xy: [0.33, 0.34],
         gamma: 2.4,
         luminance_nits: None,
-    };
+    }
+}
+
+/// Of a display whose channels act upon each other, in no order that curves could say.
+fn table() -> Profile {
+    let steps = LATTICE_STEPS;
+    let values = (0..steps.pow(3)).map(|at| {
+        let places = [at % steps, at / steps % steps, at / (steps * steps)];
+        let [r, g, b] = places.map(|place| place as f32 / (steps - 1) as f32);
+        [
+            0.9 * r,
+            0.1 + 0.7 * g * (1.0 - 0.3 * r),
+            0.8 * (b * g).sqrt(),
+        ]
+    });
+    Profile::Icc {
+        path: "table.icc".into(),
+        display: Box::new(DisplayProfile::Table(Lattice {
+            values: values.collect(),
+        })),
+        luminance_nits: None,
+    }
+}
+
+/// Two displays side by side; the first is sRGB's.
+fn wall(second: Profile) -> Wall {
     Wall {
-        displays: vec![display(0, Profile::Srgb), display(SIZE + BEZEL, measured)],
+        displays: vec![display(0, Profile::Srgb), display(SIZE + BEZEL, second)],
         windows: Windows::Each,
         top_above_floor_mm: None,
     }
@@ -98,14 +124,8 @@ fn shown(wall: &Wall, k: usize) -> Vec<u8> {
     let windows = wall.layout();
     let pane = &windows[k].panes[0];
     let correction = wall.displays[k].profile.correction();
-    let tone = images.add(panes::tone(&correction));
-    let material = world
-        .resource_mut::<Assets<PaneMaterial>>()
-        .add(PaneMaterial {
-            pane: panes::uniform(pane, &correction),
-            picture,
-            tone,
-        });
+    let material = panes::material(&mut images, &picture, pane, &correction);
+    let material = world.resource_mut::<Assets<PaneMaterial>>().add(material);
     let camera = (
         Camera2d,
         RenderTarget::Image(target.clone().into()),
@@ -149,13 +169,15 @@ fn off(wall: &Wall, bytes: &[u8], k: usize, profile_of: usize) -> f64 {
 
 #[test]
 fn each_display_shows_its_part_in_its_own_values() {
-    let wall = wall();
-    for k in 0..2 {
-        let bytes = shown(&wall, k);
-        let own = off(&wall, &bytes, k, k);
-        assert!(own <= STEPS, "display {k}: {own} of 255");
-        // Another place, and another display's values, are told apart.
-        assert!(off(&wall, &bytes, 1 - k, k) > 10.0 * STEPS);
-        assert!(off(&wall, &bytes, k, 1 - k) > 2.0 * STEPS);
+    for second in [measured(), table()] {
+        let wall = wall(second);
+        for k in 0..2 {
+            let bytes = shown(&wall, k);
+            let own = off(&wall, &bytes, k, k);
+            assert!(own <= STEPS, "display {k}: {own} of 255");
+            // Another place, and another display's values, are told apart.
+            assert!(off(&wall, &bytes, 1 - k, k) > 10.0 * STEPS);
+            assert!(off(&wall, &bytes, k, 1 - k) > 2.0 * STEPS);
+        }
     }
 }
