@@ -4,8 +4,8 @@ use std::{path::Path, sync::Arc};
 
 use glam::{DMat3, DVec3, Mat3};
 use moxcms::{
-    ColorProfile, DataColorSpace, Layout, RenderingIntent, ToneReprCurve, TransformF32Executor,
-    TransformOptions, Xyzd,
+    BarycentricWeightScale, ColorProfile, DataColorSpace, Layout, RenderingIntent, ToneReprCurve,
+    TransformF32Executor, TransformOptions, Xyzd,
 };
 
 use super::MapError;
@@ -100,6 +100,8 @@ impl Profile {
         wide.cicp = None;
         let options = TransformOptions {
             rendering_intent: RenderingIntent::RelativeColorimetric,
+            // The lower scale takes the nearest of 256 values of each channel.
+            barycentric_weight_scale: BarycentricWeightScale::High,
             ..TransformOptions::default()
         };
         let table = profile

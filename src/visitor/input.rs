@@ -188,19 +188,22 @@ impl Devices {
         self.touches.is_held(now, GONE) || self.others.iter().any(is_there)
     }
 
-    /// Tells the staff's panel of what goes on in its corner.
+    /// Tells the staff's panel of what goes on in its corners.
     pub fn watch_corner(&self, event: &WindowEvent, now: Duration, staff: &mut StaffPanel) {
-        let scale = self.touches.px_per_mm();
+        let from_corner_mm = |at: Vec2| {
+            let nearest = Vec2::new(at.x, at.y.min(self.size.y - at.y));
+            nearest / self.touches.px_per_mm()
+        };
         match event {
             WindowEvent::TouchInput(touch) => match touch.phase {
-                TouchPhase::Started => staff.land(touch.id, touch.position, scale, now),
+                TouchPhase::Started => staff.land(touch.id, from_corner_mm(touch.position), now),
                 TouchPhase::Moved => {}
-                _ => staff.lift(touch.id, touch.position, scale, now),
+                _ => staff.lift(touch.id, from_corner_mm(touch.position), now),
             },
             WindowEvent::MouseButtonInput(button) if button.button == MouseButton::Left => {
                 match button.state {
-                    ButtonState::Pressed => staff.land(MOUSE, self.cursor, scale, now),
-                    ButtonState::Released => staff.lift(MOUSE, self.cursor, scale, now),
+                    ButtonState::Pressed => staff.land(MOUSE, from_corner_mm(self.cursor), now),
+                    ButtonState::Released => staff.lift(MOUSE, from_corner_mm(self.cursor), now),
                 }
             }
             _ => {}

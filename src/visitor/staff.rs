@@ -14,7 +14,8 @@ use super::controls::{
     layout::{Item, Look},
 };
 
-/// Side of the corner, at the top where reading from the left begins.
+/// Side of a corner; one at the upper left, and one at the lower left for walls that are taller than
+/// people.
 const CORNER_MM: f32 = 25.0;
 /// How long a finger is held there.
 const HOLD: Duration = Duration::from_secs(3);
@@ -90,22 +91,21 @@ impl StaffPanel {
         self.state == State::Elsewhere
     }
 
-    /// A contact lands at `at` (logical pixels from the top left corner).
-    pub fn land(&mut self, id: u64, at: Vec2, px_per_mm: f32, now: Duration) {
-        let corner = CORNER_MM * px_per_mm;
-        if at.x <= corner && at.y <= corner {
+    /// A contact lands so far from the nearest of the corners.
+    pub fn land(&mut self, id: u64, from_corner_mm: Vec2, now: Duration) {
+        if from_corner_mm.max_element() <= CORNER_MM {
             self.held = Some((id, now));
         }
     }
 
-    /// A contact is lifted at `at`; one that was held long enough in the corner asks for the PIN.
-    pub fn lift(&mut self, id: u64, at: Vec2, px_per_mm: f32, now: Duration) {
+    /// A contact is lifted so far from the nearest of the corners; one that was held long enough in it asks for
+    /// the PIN.
+    pub fn lift(&mut self, id: u64, from_corner_mm: Vec2, now: Duration) {
         let Some((_, since)) = self.held.filter(|(held, _)| *held == id) else {
             return;
         };
         self.held = None;
-        let corner = 2.0 * CORNER_MM * px_per_mm;
-        let stayed = at.x <= corner && at.y <= corner;
+        let stayed = from_corner_mm.max_element() <= 2.0 * CORNER_MM;
         if stayed && self.pin.is_some() && now.saturating_sub(since) >= HOLD && !self.is_open() {
             self.state = State::Asking(String::new());
             self.touched = now;
@@ -223,8 +223,8 @@ mod tests {
 
     fn asking() -> StaffPanel {
         let mut panel = StaffPanel::new(Some(Pin::new("4711").expect("a PIN")));
-        panel.land(1, Vec2::splat(10.0), 4.0, Duration::from_secs(1));
-        panel.lift(1, Vec2::splat(12.0), 4.0, Duration::from_secs(5));
+        panel.land(1, Vec2::splat(10.0), Duration::from_secs(1));
+        panel.lift(1, Vec2::splat(12.0), Duration::from_secs(5));
         assert!(panel.is_open());
         panel.pass(Duration::from_secs(5));
         panel
@@ -238,9 +238,9 @@ mod tests {
     fn only_a_long_hold_in_the_corner_asks() {
         let mut panel = StaffPanel::new(Some(Pin::new("4711").expect("a PIN")));
         let hold = |panel: &mut StaffPanel, at: f32, seconds: u64| {
-            panel.land(1, Vec2::splat(at), 4.0, Duration::from_secs(10));
+            panel.land(1, Vec2::splat(at), Duration::from_secs(10));
             let end = Duration::from_secs(10 + seconds);
-            panel.lift(1, Vec2::splat(at), 4.0, end);
+            panel.lift(1, Vec2::splat(at), end);
             panel.is_open()
         };
         assert!(!hold(&mut panel, 10.0, 2) && !hold(&mut panel, 300.0, 9));

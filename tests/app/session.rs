@@ -307,8 +307,8 @@ fn staff_have_a_chart_in_the_dark_too_and_it_goes_by_itself() {
         pin: recto::installation::Pin::new("8350").ok(),
         ..Manners::default()
     });
-    let ask = |session: &mut Session| {
-        let corner = Vec2::new(10.0, 10.0);
+    let [upper, lower] = [10.0, super::visit::SIZE[1] as f32 - 10.0].map(|y| Vec2::new(10.0, y));
+    let ask = |session: &mut Session, corner: Vec2| {
         session.touch(9, TouchPhase::Started, corner);
         session.wait(3.5);
         session.lift(9, corner);
@@ -326,7 +326,7 @@ fn staff_have_a_chart_in_the_dark_too_and_it_goes_by_itself() {
     };
     let without = session.see();
     assert_eq!(red(&without), 0.0);
-    ask(&mut session);
+    ask(&mut session, upper);
     let chart = session.see();
     keep(&chart, "chart.png");
     assert!(red(&chart) > 0.02, "{}", red(&chart));
@@ -340,7 +340,7 @@ fn staff_have_a_chart_in_the_dark_too_and_it_goes_by_itself() {
 
     session.world().insert_resource(Closed(true));
     session.frame();
-    ask(&mut session);
+    ask(&mut session, lower);
     assert!(red(&session.see()) > 0.02);
     session.wait(1000.0);
     let dark = session.see();
