@@ -1,8 +1,8 @@
 //! What each tier costs against the floor, in one run: the landscape's recto at 1024², one
 //! distant lamp, from the render pass's own GPU span; what a further lamp, the relief's shadows, a
 //! sampled rectangle and light through the sheet add to a tier; and what the study tier costs on
-//! bare paper beside a shader written by hand for that alone. Then the time and memory from start
-//! to the first picture. `cargo bench --bench floor`; names of cases after `--` measure these alone
+//! bare paper beside a shader written by hand for that alone. Then what whole frames of fewer pixels take, and
+//! the time and memory from start to the first picture. `cargo bench --bench floor`; names of cases after `--` measure these alone
 //! and what their ratios are to; `RECTO_BENCH_EXHIBIT` names another exhibit.
 
 mod hand;
@@ -29,7 +29,7 @@ use recto::{
     },
     optics::tier::Tier,
     shot::{Darkroom, Picture},
-    stage::{Arranged, Shown, TABLE},
+    stage::{Arranged, Shown, TABLE, fineness::Fineness},
     units::{Degrees, Lux, Nits},
 };
 
@@ -229,7 +229,45 @@ fn main() -> Result<(), Anything> {
         );
     }
     if is_all {
+        coarser(&exhibit)?;
         first_picture(&folder)?;
+    }
+    Ok(())
+}
+
+/// What a whole frame takes, of which the pass is a part, where fewer pixels are drawn and brought to all
+/// of them.
+fn coarser(exhibit: &Exhibit) -> Result<(), Anything> {
+    const PICTURE: [u32; 2] = [1920, 1080];
+    const SHARES: [f32; 4] = [1.0, 0.8, 0.65, 0.5];
+    println!(
+        "a whole frame at {} × {}, by the share of pixels a side",
+        PICTURE[0], PICTURE[1]
+    );
+    for tier in [Tier::Draft, Tier::Gallery, Tier::Study] {
+        let (exhibit, scene) = Setting::Plain.of(exhibit);
+        let shown = Shown::at_rest(Arc::new(exhibit), scene, tier, 1.0);
+        let mut room = Darkroom::with(1, |_| {})?;
+        room.arrange(shown, PICTURE)?;
+        let mut samples = SHARES.map(|_| Vec::new());
+        for _ in 0..ROUNDS {
+            for (share, samples) in SHARES.into_iter().zip(&mut samples) {
+                room.world().insert_resource(Fineness(share));
+                for frame in 0..WARM_UP + FRAMES {
+                    let began = Instant::now();
+                    room.frame()?;
+                    if frame >= WARM_UP {
+                        samples.push(began.elapsed().as_secs_f64() * 1e3);
+                    }
+                }
+            }
+        }
+        let all = least(&samples[0]);
+        for (share, samples) in SHARES.into_iter().zip(&samples) {
+            let low = least(samples);
+            let name = tier.name();
+            println!("{name:18} {share:9.2} {low:9.3} ms {:7.2}", low / all);
+        }
     }
     Ok(())
 }
