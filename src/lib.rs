@@ -26,14 +26,15 @@
 //! | [`tradeoff`] | how far each tier is from the judge, and which one serves a scene |
 //! | [`cost`] | what each tier costs: instructions, and time on this machine |
 //! | [`prepare`] | the photographer's bench: photographs under several lamps → maps of a sheet |
+//! | [`exchange`] | what other programs write → exhibits and captures; an exhibit → IIIF |
 //! | [`sample`] | the sample exhibits, drawn by code |
 //! | [`cli`] | one file for each command |
 //!
 //! Data flows one way: manifest → `Exhibit` → `Scene` → [`Needs`](needs::Needs) → maps →
 //! sheet → window or file; the judge goes from `Scene` to a file on a way of its own. `units`,
 //! `colour`, `maps`, `measure`, `readings`, `figure`, `manifest`, `installation`, `needs`, `optics`,
-//! `reference`, `tradeoff`, `prepare`, `sample` and `wording` never name Bevy; `tests/layers.rs` holds the
-//! table of who may import whom.
+//! `reference`, `tradeoff`, `prepare`, `exchange`, `sample` and `wording` never name Bevy;
+//! `tests/layers.rs` holds the table of who may import whom.
 //!
 //! In one frame the systems run in the order of [`stage::StageSet`]: whoever steers changes
 //! [`stage::Shown`], then the stage is arranged from it.
@@ -45,6 +46,7 @@ pub mod compute;
 pub mod cost;
 pub mod develop;
 pub mod device;
+pub mod exchange;
 pub mod figure;
 pub mod installation;
 pub mod lettering;

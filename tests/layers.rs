@@ -8,7 +8,7 @@ use std::{
 
 /// Each module with the modules, or paths within them, that it may name. `bevy` stands for every
 /// crate of Bevy's. The crate's root and `cli` may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 26] = [
+const MAY_IMPORT: [(&str, &[&str]); 27] = [
     ("units", &[]),
     ("colour", &[]),
     ("optics", &["units", "colour"]),
@@ -48,6 +48,17 @@ const MAY_IMPORT: [(&str, &[&str]); 26] = [
     (
         "prepare",
         &["units", "colour", "optics", "maps", "manifest", "lettering"],
+    ),
+    // What comes in is an exhibit or a capture, and what goes out an exhibit's.
+    (
+        "exchange",
+        &[
+            "colour",
+            "maps",
+            "manifest",
+            "prepare::capture",
+            "prepare::lights",
+        ],
     ),
     ("sample", &["maps", "colour", "units"]),
     // Tiers are held against the judge here, and predicted on scenes.
