@@ -4,8 +4,9 @@
 pub mod accuracy;
 mod bsdf;
 mod check;
+mod export;
 mod failure;
-mod later;
+mod import;
 mod measure;
 mod new;
 mod options;
@@ -34,12 +35,7 @@ pub use failure::Failure;
 
 /// Shows old-master drawings as if the sheet lay in your hands.
 #[derive(Parser)]
-#[command(
-    name = "recto",
-    version,
-    args_conflicts_with_subcommands = true,
-    after_help = later::HELP
-)]
+#[command(name = "recto", version, args_conflicts_with_subcommands = true)]
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
@@ -70,6 +66,12 @@ enum Command {
     Probe(probe::Arguments),
     /// Make maps and an exhibit from photographs under several lamps
     Prepare(prepare::Arguments),
+    /// Make an exhibit of a relightable image or a IIIF manifest, or a capture file of lamps
+    #[command(after_help = import::HELP)]
+    Import(import::Arguments),
+    /// Write an exhibit for other programs: as IIIF
+    #[command(after_help = export::HELP)]
+    Export(export::Arguments),
     /// Start an exhibit from one picture
     New(new::Arguments),
     /// Write the sample exhibits and their maps
@@ -80,8 +82,6 @@ enum Command {
     Publish(publish::Arguments),
     /// Keep a window running: begin it anew when it crashes, hangs or ends
     Supervise(supervise::Arguments),
-    #[command(flatten)]
-    Later(later::Command),
 }
 
 /// Runs the command that `arguments`, the program's name first, ask for.
@@ -101,12 +101,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Command::Register(arguments) => register::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
         Command::Prepare(arguments) => prepare::run(&arguments),
+        Command::Import(arguments) => import::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Publish(arguments) => publish::run(&arguments),
         Command::Supervise(arguments) => supervise::run(arguments),
-        Command::Later(command) => Err(command.refusal()),
     }
 }
 

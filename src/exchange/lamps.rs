@@ -49,6 +49,12 @@ pub(super) fn import_lp(file: &Path, out: &Path, known: &Known) -> Result<Import
             return Err(ended(file, faulty));
         }
     };
+    if !(MIN_LAMPS..=MAX_LAMPS).contains(&lamps.len()) {
+        let allowed = format!("{MIN_LAMPS} to {MAX_LAMPS} lamps");
+        let remedy = "leave every second lamp out, or photograph under more";
+        let words = Words::new(format!("{} lamps", lamps.len()), allowed, remedy);
+        return Err(whole_file(file, words));
+    }
     let own = file.parent().unwrap_or(Path::new(""));
     let folder = known.photographs.as_deref().unwrap_or(own);
     let mut photographs = Vec::new();
