@@ -30,14 +30,14 @@ fn a_broken_ptm_is_refused_in_words() {
     let whole = ptm(LRGB, "2\n3", ONES, 54);
     for (bytes, words) in [
         (whole[..whole.len() - 1].to_vec(), "it ends too early"),
-        (whole[..20].to_vec(), "width"),
+        (whole[..26].to_vec(), "height"),
         (ptm(LRGB, "2\n3", ONES, 540), "do not belong together"),
         (b"PTM_1.2".to_vec(), "PTM_FORMAT_LRGB"),
         (b"GIF89a".to_vec(), "PTM_1.2"),
         (Vec::new(), "PTM_1.2"),
         (vec![0xff; 9000], "PTM_1.2"),
         // More than there is memory for, and than a picture may have.
-        (ptm(LRGB, "16384\n16384", ONES, 54), "2415919162 bytes"),
+        (ptm(LRGB, "16384\n16384", ONES, 54), "2415919164 bytes"),
         (
             ptm(LRGB, "4294967295\n4294967295", ONES, 54),
             "1 to 16384 pixels",

@@ -85,11 +85,11 @@ const TOPS: [[f64; 2]; 6] = [
 ];
 
 /// Scales and biases of these coefficients.
-const PTM_NUMBERS: &str = "1 1 1 1 1 0.5\n128 128 128 128 128 0\n";
+const PTM_NUMBERS: &str = "1 1 1 1 1 0.625\n128 128 128 128 128 0\n";
 
 fn bytes_of(coefficients: [f64; 6]) -> [u8; 6] {
     let byte = |(k, c): (usize, f64)| match k {
-        5 => (c / 0.5) as u8,
+        5 => (c / 0.625) as u8,
         _ => (c + 128.0) as u8,
     };
     let mut bytes = [0; 6];
@@ -146,7 +146,7 @@ fn a_ptm_with_luminance_and_colour_has_the_normals_of_its_tops() {
     // Before version 1.2 colours follow each pixel, and numbers may share lines.
     let desk = Desk::new();
     let mut file =
-        b"PTM_1.1\r\nPTM_FORMAT_LRGB\r\n2 3\r\n1 1 1 1 1 0.5 128 128 128 128 128 0\r\n".to_vec();
+        b"PTM_1.1\r\nPTM_FORMAT_LRGB\r\n2 3\r\n1 1 1 1 1 0.625 128 128 128 128 128 0\r\n".to_vec();
     let pixels: Vec<[u8; 9]> = terms
         .iter()
         .zip(&colours)
@@ -338,8 +338,8 @@ fn hemispherical_harmonics_of_a_matte_surface_give_it_back() {
     let (exhibit, _) = desk.exhibit("matte.rti", &Known::default());
     let [mean, most, colour] = surface.errors(&exhibit);
     eprintln!("HSH: mean {mean:.2}°, most {most:.2}°, albedo {colour:.3}");
-    assert!(mean < 2.0 && most < 5.0, "mean {mean}°, most {most}°");
-    assert!(colour < 0.04, "{colour}");
+    assert!(mean < 1.0 && most < 2.0, "mean {mean}°, most {most}°");
+    assert!(colour < 0.02, "{colour}");
 }
 
 /// Writes an `info.json` and its planes as PNG: `planes[pixel][plane]` are bytes.
@@ -386,8 +386,8 @@ fn planes_of_relight_give_a_matte_surface_back() {
     let surface = Surface::new(9, 7);
     // A parabola is a poor arch: its top is off by degrees, as in every PTM.
     for (kind, basis, most_mean, most_colour) in [
-        ("hsh", hsh as fn(DVec3) -> Vec<f64>, 2.0, 0.04),
-        ("ptm", polynomial, 6.0, 0.1),
+        ("hsh", hsh as fn(DVec3) -> Vec<f64>, 1.0, 0.02),
+        ("ptm", polynomial, 5.0, 0.1),
     ] {
         let (scale, bias, planes) = quantised(&fitted(&surface, basis));
         let info = json!({
@@ -419,7 +419,7 @@ fn luminance_planes_of_relight_are_those_of_a_ptm() {
     let info = json!({
         "type": "ptm", "colorspace": "lrgb", "nplanes": 9,
         "materials": [{
-            "scale": [7, 7, 7, 0.5, 1, 1, 1, 1, 1],
+            "scale": [7, 7, 7, 0.625, 1, 1, 1, 1, 1],
             "bias": [0, 0, 0, 0, b, b, b, b, b],
         }],
     });
@@ -465,22 +465,21 @@ fn tables_of_relight_give_a_matte_surface_back() {
     surface.pixels.truncate(3);
     let lamps = dome();
     let flat: Vec<f64> = lamps.iter().flat_map(|l| l.to_array()).collect();
-    // Places of the octahedron, turned by 45°.
-    let grid: Vec<DVec3> = (0..81)
-        .map(|i| {
-            let [u, v] = [i % 9, i / 9].map(|k| f64::from(k) / 4.0 - 1.0);
-            let (x, y) = ((u - v) / 2.0, (u + v) / 2.0);
-            DVec3::new(x, y, (1.0 - x.abs() - y.abs()).max(0.0)).normalize()
-        })
-        .collect();
-    let material = |planes: usize| json!([{ "scale": vec![1; planes], "bias": vec![0; planes], "range": vec![128; planes] }]);
+    let material = json!([{ "scale": [1, 1, 1], "bias": [0, 0, 0], "range": [128, 128, 128] }]);
     let rbf = json!({ "type": "rbf", "colorspace": "mrgb", "nplanes": 3, "lights": flat,
-        "sigma": 0.125, "materials": material(3) });
-    let bilinear = json!({ "type": "bilinear", "colorspace": "mrgb", "nplanes": 3,
-        "resolution": 9, "materials": material(3) });
-    for (mut info, places, inside) in [(rbf, &lamps, true), (bilinear, &grid, false)] {
+        "sigma": 0.125, "materials": material });
+    let bilinear = |side: usize| {
+        json!({ "type": "bilinear", "colorspace": "mrgb", "nplanes": 3,
+            "resolution": side, "materials": material })
+    };
+    let mut worst = Vec::new();
+    for (mut info, places, inside) in [
+        (rbf, lamps, true),
+        (bilinear(9), octahedron(9), false),
+        (bilinear(33), octahedron(33), false),
+    ] {
         let desk = Desk::new();
-        let table = table(&surface, places, 3, [0, 1, 2]);
+        let table = table(&surface, &places, 3, [0, 1, 2]);
         if inside {
             info["basis"] = json!(table);
         } else {
@@ -492,9 +491,25 @@ fn tables_of_relight_give_a_matte_surface_back() {
         let (exhibit, _) = desk.exhibit("", &Known::default());
         let [mean, most, colour] = surface.errors(&exhibit);
         eprintln!("Relight {kind}: mean {mean:.2}°, most {most:.2}°, albedo {colour:.3}");
-        assert!(most < 1.5, "{kind}: {most}°");
         assert!(colour < 0.03, "{kind}: {colour}");
+        worst.push(most);
     }
+    // Between nine places a side the table itself is straight where light is not.
+    assert!(
+        worst[0] < 0.5 && worst[1] < 3.0 && worst[2] < 0.7,
+        "{worst:?}"
+    );
+    assert!(worst[2] < worst[1] / 3.0, "{worst:?}");
+}
+
+/// Places of an octahedron folded flat and turned by 45°, so many a side.
+fn octahedron(side: usize) -> Vec<DVec3> {
+    let place = |i: usize| {
+        let [u, v] = [i % side, i / side].map(|k| 2.0 * k as f64 / (side - 1) as f64 - 1.0);
+        let (x, y) = ((u - v) / 2.0, (u + v) / 2.0);
+        DVec3::new(x, y, (1.0 - x.abs() - y.abs()).max(0.0)).normalize()
+    };
+    (0..side * side).map(place).collect()
 }
 
 #[test]

@@ -151,12 +151,16 @@ fn slug(label: &str) -> Option<String> {
 /// `others` show.
 pub fn role<F>(path: &str, label: &Texts, others: &[F], role_of: impl Fn(&F) -> &Role) -> Role {
     let is_new = |role: &Role| others.iter().all(|other| role_of(other) != role);
-    let is_plain = |role: &Role| match role {
-        Role::Albedo => false,
-        Role::State(id) | Role::Overlay(id) => Id::from_text(id).is_some(),
-        Role::Band(stack, nm) => Id::from_text(stack).is_some() && is_band(nm),
+    let plain = |role: Role| match role {
+        Role::Albedo => None,
+        Role::State(id) => Id::from_text(&id).map(|_| Role::State(id)),
+        Role::Overlay(id) => Id::from_text(&id).map(|_| Role::Overlay(id)),
+        Role::Band(stack, nm) => {
+            let nm = Id::from_text(&stack).and_then(|_| band(&nm))?;
+            Some(Role::Band(stack, nm))
+        }
     };
-    let by_path = Role::of(path).filter(|role| is_plain(role));
+    let by_path = Role::of(path).and_then(plain);
     let by_label = label.any().and_then(|label| {
         let nm = wavelength(label)?;
         Some(Role::Band("bands".to_owned(), nm))
@@ -171,10 +175,11 @@ pub fn role<F>(path: &str, label: &Texts, others: &[F], role_of: impl Fn(&F) -> 
     offered.find(is_new).unwrap_or(Role::Albedo)
 }
 
-/// Whether a wavelength is one that a band may have.
-fn is_band(nm: &str) -> bool {
+/// A wavelength that a band may have, as it is written shortest.
+fn band(nm: &str) -> Option<String> {
     let number = BandKey::from_text(nm).and_then(|_| nm.parse::<f64>().ok());
-    number.is_some_and(|nm| (100.0..=20000.0).contains(&nm))
+    let number = number.filter(|nm| (100.0..=20000.0).contains(nm));
+    number.map(|nm| nm.to_string())
 }
 
 /// The wavelength in a label such as `Infrared, 940 nm`.
@@ -187,7 +192,7 @@ fn wavelength(label: &str) -> Option<String> {
             i + before[i..].chars().next().map_or(1, char::len_utf8)
         });
     let nm = before[start..].trim_matches('.');
-    is_band(nm).then(|| nm.to_owned())
+    band(nm)
 }
 
 impl<'c, 'j> Sheet<'c, 'j> {

@@ -46,11 +46,15 @@ pub(in super::super) fn import(
     let real = folder
         .canonicalize()
         .map_err(ExchangeError::folder(folder))?;
-    let beside = Beside::new(real, manifest.id);
+    let source = Source {
+        beside: Beside::new(real, manifest.id),
+        credit: &manifest.credit,
+        known,
+    };
     let sheets = sheet::sheets(&manifest.canvases, &mut faulty);
     let mut drawings = Vec::new();
     for sheet in &sheets {
-        drawings.extend(drawing(sheet, &beside, known, &mut faulty)?);
+        drawings.extend(drawing(sheet, &source, &mut faulty)?);
     }
     faulty.check()?;
     let text = text(&manifest, &drawings);
@@ -86,6 +90,14 @@ fn copy(from: &Path, to: &Path) -> Result<(), ExchangeError> {
     Ok(())
 }
 
+/// What all sheets of a manifest come from.
+struct Source<'s> {
+    beside: Beside,
+    /// Of what has none of its own.
+    credit: &'s Texts,
+    known: &'s Known,
+}
+
 /// A drawing, as lines of a manifest and files.
 struct Drawing {
     text: String,
@@ -106,8 +118,7 @@ struct Found {
 /// `None` where faults are recorded.
 fn drawing(
     sheet: &Sheet<'_, '_>,
-    beside: &Beside,
-    known: &Known,
+    source: &Source<'_>,
     faulty: &mut Faulty<'_>,
 ) -> Result<Option<Drawing>, ExchangeError> {
     let mut files = Vec::new();
@@ -117,7 +128,7 @@ fn drawing(
         let mut found = Vec::new();
         let mut is_whole = true;
         for (i, picture) in canvas.pictures.iter().enumerate() {
-            let (file, given) = match beside.find(&picture.ids) {
+            let (file, given) = match source.beside.find(&picture.ids) {
                 Ok(found) => found,
                 Err(why) => {
                     let id = picture.ids.first().copied().unwrap_or_default();
@@ -150,11 +161,12 @@ fn drawing(
     let Some(header) = header else {
         return Ok(None);
     };
-    let size_mm = sheet.size_mm(known, &header, faulty);
+    let size_mm = sheet.size_mm(source.known, &header, faulty);
     let mut languages = BTreeSet::new();
     let text = Writer {
         sheet,
         size_mm,
+        credit: source.credit,
         languages: &mut languages,
     }
     .drawing(&sides, faulty);
@@ -211,6 +223,7 @@ fn extension(file: &Path) -> String {
 struct Writer<'w> {
     sheet: &'w Sheet<'w, 'w>,
     size_mm: [f64; 2],
+    credit: &'w Texts,
     languages: &'w mut BTreeSet<String>,
 }
 
@@ -238,7 +251,7 @@ impl Writer<'_> {
         let mut text = format!("[[drawing]]\nid = \"{}\"\n", self.sheet.id);
         text += &self.wording("title", &self.sheet.title.clone());
         text += &self.wording("caption", &first.summary);
-        text += &line("credit", first.credit.any());
+        text += &line("credit", first.credit.any().or(self.credit.any()));
         text += &line("date", first.about.date.as_deref());
         text += &line("inventory", first.about.inventory.as_deref());
         let [width, height] = self.size_mm;

@@ -75,15 +75,6 @@ fn hsh(l: DVec3) -> [f64; HSH_TERMS] {
 }
 
 impl Basis {
-    /// How many planes of coefficients it takes for one channel, or for all together.
-    pub fn terms(&self) -> usize {
-        match self {
-            Self::Ptm => PTM_TERMS,
-            Self::Hsh(terms) => *terms,
-            Self::Table(table) => table.rows.len() - 1,
-        }
-    }
-
     /// What the mean and each term give to red, green and blue under light from `l`, a unit vector
     /// with z ≥ 0.
     pub fn weights(&self, l: DVec3) -> Vec<[f64; 3]> {
