@@ -1,0 +1,347 @@
+//! What a side is made of, by its photographs: materials, gloss, depth of ink, and what it passes
+//! of light.
+//!
+//! | step | where |
+//! |---|---|
+//! | while the photographs run through | [`Gathering`] |
+//! | swatches → classes | [`super::materials`] |
+//! | roughness of each class | [`super::gloss`] |
+//! | depth of each ink | [`super::depth`] |
+//! | the sheet on a light table | [`super::transmission`] |
+//! | lines of a manifest | `lines` |
+//! | the report's page | `page` |
+
+mod lines;
+mod page;
+
+use std::path::Path;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{
+    PrepareError,
+    capture::{Capture, Crop, Shots},
+    colour::correct::Correction,
+    depth::{self, InkDepth},
+    gloss::{self, Roughness, Samples},
+    materials::{
+        self, Known, Materials,
+        features::{Gloss, Seen},
+        legend::{self, MediaFile},
+    },
+    model::Model,
+    photographs::Band,
+    stereo::{Rig, Solved},
+    transmission::{self, Transmission},
+    write::SideFiles,
+};
+use crate::{
+    colour::srgb_decode,
+    manifest::SideName,
+    maps::{Level, Pyramid, Texels, bare_albedo},
+    optics::medium::{Matter, Medium, MediumId},
+};
+pub(super) use lines::{drawing_lines, media_lines, paper_line, side_lines};
+pub(super) use page::{page, sources};
+
+/// The share of grains' or body colour's places, from the darkest, that cover the paper wholly.
+const COVERING: f64 = 0.1;
+/// Places of a class that its colour is taken from, at most.
+const COLOURED: usize = 50_000;
+
+/// What came of a side's materials.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MatterReport {
+    /// Linear albedo of the bare paper.
+    pub paper_albedo: [f64; 3],
+    /// `None` where no swatch names a medium of this side.
+    pub materials: Option<Materials>,
+    pub files: Vec<MediaFile>,
+    /// Linear albedo at full coverage of media that have one, in the order of the classes.
+    pub albedo: Vec<Option<[f64; 3]>>,
+    /// Of each class; of bare paper alone where there are no swatches.
+    pub roughness: Vec<Roughness>,
+    pub inks: Vec<InkDepth>,
+    /// τ that is white in the map of depths; 0 where there is none.
+    pub depth_white: f64,
+    /// Of the recto, where there is a photograph in transmitted light.
+    pub transmission: Option<Transmission>,
+}
+
+/// What is kept of photographs while they run through.
+pub(super) struct Gathering {
+    swatches: Vec<Known>,
+    gloss: Gloss,
+    samples: Samples,
+}
+
+impl Gathering {
+    pub fn new(capture: &Capture, side: SideName, shots: &Shots) -> Self {
+        let crop = shots.crop;
+        let within = |rect: Crop| Crop {
+            left: rect.left.max(crop.left) - crop.left,
+            top: rect.top.max(crop.top) - crop.top,
+            right: rect.right.min(crop.right).saturating_sub(crop.left),
+            bottom: rect.bottom.min(crop.bottom).saturating_sub(crop.top),
+        };
+        let own = capture.swatches.iter().filter(|swatch| swatch.side == side);
+        let swatches: Vec<Known> = own
+            .map(|swatch| Known {
+                medium: swatch.medium,
+                rect: within(swatch.rect),
+            })
+            .filter(|known| {
+                known.rect.left < known.rect.right && known.rect.top < known.rect.bottom
+            })
+            .collect();
+        let size = [crop.width(), crop.height()];
+        Self {
+            gloss: Gloss::default(),
+            samples: Samples::new(size, shots.photographs.len(), &swatches),
+            swatches,
+        }
+    }
+
+    /// Reads a band whose light was divided out, and what it was solved to, before its colours
+    /// are corrected.
+    pub fn add(&mut self, band: &Band, solved: &Solved, rig: &Rig) {
+        // Without media nobody asks for it.
+        if self.swatches.iter().any(|swatch| swatch.medium.is_some()) {
+            self.gloss.add(band, solved, rig);
+        }
+        self.samples.add(band);
+    }
+
+    /// Finds out what the side is made of, and writes its maps.
+    ///
+    /// # Errors
+    /// Where a photograph in transmitted light cannot be used, or a map cannot be written.
+    pub fn finish(
+        self,
+        bench: &Bench<'_>,
+        maps: &SideFiles<'_>,
+        scratch: &Path,
+    ) -> Result<MatterReport, PrepareError> {
+        let Bench {
+            albedo, normals, ..
+        } = *bench;
+        let Self {
+            swatches,
+            gloss,
+            samples,
+        } = self;
+        let size = maps.size();
+        let seen = Seen {
+            width: size[0],
+            albedo,
+            normals,
+            gloss: &gloss,
+        };
+        let classified = materials::classify(&seen, &swatches);
+        drop(gloss);
+        let (classes, materials) = match classified {
+            Some((classes, materials)) => (classes, Some(materials)),
+            None => (vec![0; albedo.len()], None),
+        };
+        let names = match &materials {
+            Some(materials) => materials.media.clone(),
+            None => vec![None],
+        };
+        let mut report = MatterReport::default();
+        let linear = |i: usize| DVec3::from(albedo[i].map(|v| srgb_decode(f64::from(v) / 65535.0)));
+        // Without media the paper is where the sheet is light, as a renderer takes it.
+        let paper = match &materials {
+            Some(_) => colour(&classes, 0, &linear, 1.0),
+            None => None,
+        };
+        let paper = paper.unwrap_or_else(|| DVec3::from(light(albedo, size)));
+        report.paper_albedo = paper.to_array();
+        let Some(model) = Model::laid(paper) else {
+            return Ok(report);
+        };
+        let mut media: Vec<Option<Medium>> = names
+            .iter()
+            .map(|name| name.map(|id| *id.medium()))
+            .collect();
+        for (class, medium) in media.iter_mut().enumerate() {
+            let found = medium.as_mut().and_then(|medium| match &mut medium.matter {
+                Matter::Particles(particles) => {
+                    let found = colour(&classes, class, &linear, COVERING)?.to_array();
+                    particles.albedo = found;
+                    Some(found)
+                }
+                Matter::Body(body) => {
+                    let found = colour(&classes, class, &linear, 1.0)?.to_array();
+                    body.albedo = found;
+                    Some(found)
+                }
+                _ => None,
+            });
+            report.albedo.push(found);
+        }
+        let lit;
+        let of_fit: &[u8] = match &materials {
+            Some(_) => &classes,
+            None => {
+                lit = only_light(albedo);
+                &lit
+            }
+        };
+        let model = roughnesses(
+            &mut report,
+            model,
+            &mut media,
+            &names,
+            &samples,
+            bench,
+            of_fit,
+        );
+        drop(samples);
+        if let Some(materials) = &materials {
+            let depths = depth::depths(&model, &media, &names, &classes, albedo);
+            report.files = legend::files(&materials.media);
+            maps.media(&report.files, &classes)?;
+            maps.depth(&depths)?;
+            (report.inks, report.depth_white) = (depths.inks, depths.white);
+        }
+        if bench.side == SideName::Recto {
+            // Without media what is dark is taken for ink, as a renderer does.
+            let ink = "iron-gall-ink".parse::<MediumId>().ok();
+            let unknown = [ink.map(|id| *id.medium())];
+            let side = transmission::Side {
+                shots: bench.shots,
+                albedo,
+                classes: &classes,
+                media: if materials.is_some() {
+                    &media
+                } else {
+                    &unknown
+                },
+            };
+            let found = transmission::transmission(bench.capture, &side, &model, scratch)?;
+            if let Some((map, told)) = found {
+                maps.transmission(&map)?;
+                report.transmission = Some(told);
+            }
+        }
+        report.materials = materials;
+        Ok(report)
+    }
+}
+
+/// What is known of a side once its photographs have run through.
+#[derive(Clone, Copy)]
+pub(super) struct Bench<'b> {
+    pub capture: &'b Capture,
+    pub side: SideName,
+    pub shots: &'b Shots,
+    pub rig: &'b Rig,
+    pub correction: Option<&'b Correction>,
+    /// What albedo was multiplied with.
+    pub exposure: f64,
+    /// sRGB-encoded.
+    pub albedo: &'b [[u16; 3]],
+    pub normals: &'b [[f32; 3]],
+}
+
+/// Fits the roughness of the paper first, which all else lies on.
+fn roughnesses(
+    report: &mut MatterReport,
+    model: Model,
+    media: &mut [Option<Medium>],
+    names: &[Option<MediumId>],
+    samples: &Samples,
+    bench: &Bench<'_>,
+    classes: &[u8],
+) -> Model {
+    let linear =
+        |i: usize| DVec3::from(bench.albedo[i].map(|v| srgb_decode(f64::from(v) / 65535.0)));
+    let corrected = |rgb: [f32; 3]| {
+        let rgb = rgb.map(f64::from);
+        let rgb = bench
+            .correction
+            .map_or(rgb, |correction| correction.apply(rgb));
+        DVec3::from(rgb) * bench.exposure
+    };
+    let sheet = gloss::Sheet {
+        classes,
+        normals: bench.normals,
+        albedo: &linear,
+        colour: &corrected,
+    };
+    let mut model = model;
+    for (class, (name, medium)) in names.iter().zip(media).enumerate() {
+        let places = samples.of_class(class as u8, &sheet);
+        let found = gloss::fit(&model, *name, medium.as_ref(), &places, bench.rig);
+        match (found.within, medium) {
+            (None, _) => {}
+            (Some(_), None) => model = model.with(|paper| paper.roughness = found.alpha),
+            (Some(_), Some(medium)) => match &mut medium.matter {
+                Matter::Film(film) => film.roughness = found.alpha,
+                Matter::Body(body) => body.roughness = found.alpha,
+                Matter::Particles(particles) => particles.roughness = found.alpha,
+                Matter::Paper(_) | Matter::Relief => {}
+            },
+        }
+        report.roughness.push(found);
+    }
+    model
+}
+
+/// Mean colour of a class's places between its quartiles of light, among the share `darkest` of
+/// them; `None` where it has none.
+fn colour(
+    classes: &[u8],
+    class: usize,
+    linear: &(impl Fn(usize) -> DVec3 + Sync),
+    darkest: f64,
+) -> Option<DVec3> {
+    let own: Vec<usize> = (0..classes.len())
+        .into_par_iter()
+        .filter(|i| usize::from(classes[*i]) == class)
+        .collect();
+    let step = (own.len() / COLOURED).max(1) | 1;
+    let mut found: Vec<DVec3> = own.into_iter().step_by(step).map(linear).collect();
+    found.sort_by(|a, b| a.element_sum().total_cmp(&b.element_sum()));
+    found.truncate(((found.len() as f64 * darkest).ceil() as usize).max(1));
+    let middle = found.get(found.len() / 4..(3 * found.len()).div_ceil(4))?;
+    let sum: DVec3 = middle.iter().sum();
+    (!middle.is_empty()).then(|| sum / middle.len() as f64)
+}
+
+/// Linear albedo of the sheet where it is light, as `maps::bare_albedo` takes it.
+fn light(albedo: &[[u16; 3]], [width, height]: [usize; 2]) -> [f64; 3] {
+    // Its coarse level, by the nearest pixels.
+    let step = width.max(height).div_ceil(512).max(1);
+    let rows = (0..height).step_by(step);
+    let texels: Vec<u16> = rows
+        .flat_map(|y| (0..width).step_by(step).map(move |x| y * width + x))
+        .flat_map(|i| albedo[i].map(|v| (srgb_decode(f64::from(v) / 65535.0) * 65535.0) as u16))
+        .collect();
+    bare_albedo(&Pyramid {
+        channels: 3,
+        levels: vec![Level {
+            width: width.div_ceil(step) as u32,
+            height: height.div_ceil(step) as u32,
+            texels: Texels::Unorm16(texels),
+        }],
+        missing: 0,
+    })
+}
+
+/// 0 where the sheet is lighter than its median, and 1 elsewhere.
+fn only_light(albedo: &[[u16; 3]]) -> Vec<u8> {
+    let light = |rgb: &[u16; 3]| u32::from(rgb[0]) + 2 * u32::from(rgb[1]) + u32::from(rgb[2]);
+    let step = (albedo.len() / COLOURED).max(1) | 1;
+    let mut sampled: Vec<u32> = albedo.iter().step_by(step).map(light).collect();
+    let middle = sampled.len() / 2;
+    let median = match sampled.is_empty() {
+        true => 0,
+        false => *sampled.select_nth_unstable(middle).1,
+    };
+    albedo
+        .par_iter()
+        .map(|rgb| u8::from(light(rgb) < median))
+        .collect()
+}
