@@ -6,6 +6,11 @@
 //! what is left over is least is the material's (variable projection, Golub & Pereyra 1973).
 //! Shadows and specks are outliers and lose their weight.
 //!
+//! The same fits say how far stereo's albedo is off, which took every surface for paper: glossier
+//! ink gleams into it, and slanted light goes a longer way through ink. Of each class the
+//! difference is put down to the albedo and the slope ([`Amendment`]), and every place of it gets
+//! what it is on these.
+//!
 //! Lamps of one height over an even surface show gloss and albedo as one: then nothing is least,
 //! the bound is wide, and the roughness stays assumed.
 
@@ -14,7 +19,7 @@ use rayon::prelude::*;
 
 use super::{
     capture::Crop,
-    linear::solve_positive,
+    linear::{least_squares, solve_positive},
     materials::Known,
     model::{Model, Spot},
     photographs::Band,
@@ -28,7 +33,7 @@ const KEPT_OF_SWATCH: usize = 1_500;
 /// Bytes that they may take.
 const KEPT_BYTES: usize = 96 << 20;
 /// Places that a fit takes, and the fewest that it is done with.
-const PLACES: usize = 240;
+const PLACES: usize = 160;
 const FEWEST: usize = 40;
 /// Roughnesses looked at first.
 const GRID: [f64; 9] = [0.1, 0.14, 0.2, 0.28, 0.38, 0.5, 0.64, 0.8, 1.0];
@@ -195,6 +200,68 @@ pub struct Roughness {
     pub places: usize,
 }
 
+/// How the albedo of a class differs from what stereo made of it: a sum of 1, the albedo and the
+/// square of the slope, with these factors for each channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Amendment {
+    pub factors: [[f64; 3]; 3],
+}
+
+impl Amendment {
+    fn terms(albedo: f64, normal: DVec3) -> [f64; 3] {
+        /// Beyond, a slope is a mistake or an edge.
+        const STEEPEST: f64 = 0.5;
+        let [p, q] = slopes(normal);
+        [1.0, albedo, (p * p + q * q).min(STEEPEST * STEEPEST)]
+    }
+
+    /// Of places before and after their fit. `None` where there are too few.
+    fn new(places: &[Place], found: &[[f64; 5]]) -> Option<Self> {
+        /// Of the mean square of the terms: where a class has one albedo, the constant is enough.
+        const RIDGE: f64 = 1e-4;
+        let mut factors = [[0.0; 3]; 3];
+        for (c, factors) in factors.iter_mut().enumerate() {
+            let rows = places
+                .iter()
+                .map(|place| Self::terms(place.albedo[c], place.normal));
+            let rows: Vec<Vec<f64>> = rows.map(|row| row.to_vec()).collect();
+            let each = places.iter().zip(found);
+            let off: Vec<f64> = each
+                .map(|(place, found)| found[2 + c] - place.albedo[c])
+                .collect();
+            let mut weights = vec![1.0; rows.len()];
+            // Places in shadow, and specks, are forgotten.
+            for _ in 0..4 {
+                let fitted = least_squares(&rows, &weights, std::slice::from_ref(&off), RIDGE)?;
+                let fitted = fitted.first()?;
+                let left = |i: usize| {
+                    let terms = rows[i].iter().zip(fitted);
+                    off[i] - terms.map(|(term, factor)| term * factor).sum::<f64>()
+                };
+                let mut sizes: Vec<f64> = (0..rows.len()).map(|i| left(i).abs()).collect();
+                sizes.sort_by(f64::total_cmp);
+                let scale = OUTLIER * sizes[sizes.len() / 2].max(1e-6);
+                for (i, weight) in weights.iter_mut().enumerate() {
+                    *weight = 1.0 / (1.0 + (left(i) / scale).powi(2));
+                }
+                factors.copy_from_slice(fitted);
+            }
+        }
+        Some(Self { factors })
+    }
+
+    /// A linear albedo where the surface faces along `normal`, put right.
+    pub fn apply(&self, albedo: DVec3, normal: DVec3) -> DVec3 {
+        let amended = |c: usize| {
+            let terms = Self::terms(albedo[c], normal);
+            let off: f64 = terms.iter().zip(self.factors[c]).map(|(t, f)| t * f).sum();
+            // No class is that far off.
+            (albedo[c] + off).clamp(0.25 * albedo[c], 2.0 * albedo[c] + 0.02)
+        };
+        DVec3::new(amended(0), amended(1), amended(2))
+    }
+}
+
 /// Fits the roughness of `medium`, whose other constants are `constants`, or of bare paper, to
 /// some of its places.
 pub fn fit(
@@ -203,7 +270,7 @@ pub fn fit(
     constants: Option<&Medium>,
     places: &[Place],
     rig: &Rig,
-) -> Roughness {
+) -> (Roughness, Option<Amendment>) {
     let assumed = match constants {
         Some(medium) if medium.matter != Matter::Relief => medium.roughness(),
         _ => model.surface.alpha,
@@ -217,7 +284,7 @@ pub fn fit(
     };
     // A groove has no surface of its own.
     if places.len() < FEWEST || constants.is_some_and(|medium| medium.matter == Matter::Relief) {
-        return unknown(0.0);
+        return (unknown(0.0), None);
     }
     let mut fit = Fit::new(model, constants, places, rig);
     let mut tried: Vec<(f64, f64)> = GRID.iter().map(|alpha| (*alpha, fit.at(*alpha))).collect();
@@ -242,22 +309,22 @@ pub fn fit(
         tried.insert(place, (alpha, fit.at(alpha)));
     }
     let i = best(&tried);
-    let residual = fit.residual();
     let known = places.len() as f64 * (3.0 * rig.count() as f64 - 5.0);
-    if i == 0 || i + 1 == tried.len() || known <= 0.0 {
-        return unknown(residual);
-    }
-    let (alpha, bound) = parabola(&tried, i, known);
-    match bound < WIDEST * alpha {
-        true => Roughness {
-            medium,
+    let inside = i > 0 && i + 1 < tried.len() && known > 0.0;
+    let fitted = inside.then(|| parabola(&tried, i, known));
+    let fitted = fitted.filter(|(alpha, bound)| *bound < WIDEST * alpha);
+    // As it will be shown.
+    fit.first = true;
+    fit.at(fitted.map_or(assumed, |(alpha, _)| alpha));
+    let roughness = match fitted {
+        Some((alpha, bound)) => Roughness {
             alpha,
             within: Some(bound),
-            residual,
-            places: places.len(),
+            ..unknown(fit.residual())
         },
-        false => unknown(residual),
-    }
+        None => unknown(fit.residual()),
+    };
+    (roughness, Amendment::new(places, &fit.found))
 }
 
 /// The least of the parabola around the place `i`, and within how much of it the sum rises by what

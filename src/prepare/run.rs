@@ -293,12 +293,10 @@ fn prepare_side(
     }
     let measured = matches!(capture.lamps.light, Light::FlatField { .. }) || correction.is_some();
     let assumed_exposure = (!measured).then(|| exposure(&albedo[1]));
-    let encoded = encoded(&albedo, assumed_exposure.unwrap_or(1.0));
+    let mut encoded = encoded(&albedo, assumed_exposure.unwrap_or(1.0));
     drop(albedo);
-    tell("writing maps", 0.5);
+    tell("materials", 0.5);
     let maps = SideFiles::new(side, size, capture, scratch)?;
-    maps.albedo(&encoded)?;
-    tell("materials", 0.55);
     let bench = Bench {
         capture,
         side,
@@ -306,10 +304,11 @@ fn prepare_side(
         rig,
         correction,
         exposure: assumed_exposure.unwrap_or(1.0),
-        albedo: &encoded,
         normals: &normals,
     };
-    let matter = gathering.finish(&bench, &maps, scratch)?;
+    let matter = gathering.finish(&bench, &mut encoded, &maps, scratch)?;
+    tell("writing maps", 0.6);
+    maps.albedo(&encoded)?;
     drop(encoded);
     tell("relief", 0.7);
     let sigma_px = (capture.relief.split_mm / capture.mm_per_px).max(0.5);

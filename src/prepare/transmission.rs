@@ -21,24 +21,31 @@ use super::{
     model::Model,
     photographs::Stack,
 };
-use crate::{colour::srgb_decode, optics::medium::Medium};
+use crate::{
+    colour::srgb_decode,
+    optics::medium::{Matter, Medium},
+};
 
 /// Linear light from which a channel counts as clipped.
 const CLIPPED: f32 = 0.995;
 /// The share of the sheet that may be clipped: holes, losses, and an irregular edge.
 const CLIPPED_SHARE: f64 = 0.05;
 /// What is darker on all the sheet was not lit.
-const DARK: f64 = 1e-4;
+const DARK: f64 = 2e-3;
 /// What a camera's colours count: as in stereo.
 const GREY: DVec3 = DVec3::new(0.25, 0.5, 0.25);
 /// Nodes along each channel of the table of what passes.
-const NODES: usize = 33;
+const NODES: usize = 17;
 /// Clearness at which what passes is tabulated.
 const CLEAR: [f64; 3] = [0.5, 1.0, 2.0];
-/// Ink that leaves a smaller share of the bare paper's light hides the paper.
-const HIDDEN: f64 = 0.12;
-/// The least and the most that paper passes over the mean sheet: beyond are holes and patches.
-const RANGE: [f64; 2] = [0.05, 3.0];
+/// What leaves a smaller share of the bare paper's light hides the paper: ink, whose depth is known,
+/// and grains or body colour, whose coverage is known less well.
+const HIDDEN: [f64; 2] = [0.2, 0.5];
+/// The least and the most that paper passes over the mean sheet, which the map shows as black and
+/// white or nearly so: beyond are holes and patches.
+const RANGE: [f64; 2] = [0.02, 2.0];
+/// How often the mean of the map is brought to 1.
+const ROUNDS: usize = 2;
 /// Thicknesses in µm that a sheet may have; else the light table was exposed otherwise.
 const THICKNESS_UM: [f64; 2] = [30.0, 600.0];
 /// Places that the level is taken from, at most.
@@ -71,8 +78,6 @@ pub struct Transmission {
     pub hidden: f64,
     /// 5th and 95th percentile of what paper passes, over its mean.
     pub spread: [f64; 2],
-    /// What white is in the map, over the mean.
-    pub white: f64,
 }
 
 /// The recto, as far as it is known.
@@ -86,7 +91,7 @@ pub struct Side<'s> {
 }
 
 /// Reads the photograph, and gives how much more than the mean sheet the paper of each place
-/// passes (0 … 65535 for 0 … [`Transmission::white`]).
+/// passes: 0 … 65535 for 0 … 2.
 ///
 /// # Errors
 /// [`PrepareError`] of the photograph, or of that of the light table.
@@ -103,25 +108,58 @@ pub fn transmission(
         path: frame.photograph.clone(),
         why,
     };
-    let photographed = read(capture, side, &frame.photograph, scratch)?;
-    let (mut grey, clipped) = photographed;
+    let (grey, clipped) = read(capture, side, &frame.photograph, scratch)?;
     if clipped > CLIPPED_SHARE {
         return Err(refused(TransmissionError::Saturated {
             share: clipped * 100.0,
         }));
     }
-    if grey.iter().all(|v| f64::from(*v) < DARK) {
+    let bare = of_bare(&grey, side);
+    if bare.is_nan() || bare < DARK {
         return Err(refused(TransmissionError::Dark));
     }
+    // A renderer takes the mean of the map for the mean sheet: so it has to be.
+    let mut mean = 1.0;
+    let mut solved = solve(model, side, frame.flat_field.is_some(), (&grey, bare), mean);
+    for _ in 1..ROUNDS {
+        mean *= solved.mean;
+        solved = solve(model, side, frame.flat_field.is_some(), (&grey, bare), mean);
+    }
+    let told = Transmission {
+        levelled: frame.flat_field.is_some(),
+        thickness_um: solved.thickness_um,
+        passes: solved.thickness_um.map(|_| bare),
+        hidden: solved.hidden,
+        spread: solved.spread.map(|v| v / solved.mean),
+    };
+    Ok(Some((solved.map, told)))
+}
+
+/// A map, and what it rests on.
+struct Solved {
+    map: Vec<u16>,
+    mean: f64,
+    thickness_um: Option<f64>,
+    hidden: f64,
+    spread: [f64; 2],
+}
+
+/// Solves what is photographed, of which bare paper's median is `bare`, where the mean sheet
+/// passes `mean` times what bare paper does.
+fn solve(
+    model: &Model,
+    side: &Side<'_>,
+    levelled: bool,
+    (grey, bare): (&[f32], f64),
+    mean: f64,
+) -> Solved {
     let mut model = std::borrow::Cow::Borrowed(model);
     let mut thickness_um = None;
-    let mut passes = None;
-    let bare = of_bare(&grey, side);
-    if frame.flat_field.is_some() {
-        let found = thickness(&model, bare);
+    if levelled {
+        let found = thickness(&model, bare, 1.0 / mean);
         if (THICKNESS_UM[0]..=THICKNESS_UM[1]).contains(&found) {
             model = std::borrow::Cow::Owned(model.with(|paper| paper.thickness_um = found));
-            (thickness_um, passes) = (Some(found), Some(bare));
+            thickness_um = Some(found);
         }
     }
     let tables: Vec<Table> = side
@@ -132,46 +170,45 @@ pub fn transmission(
     let mut spot = model.spot(None);
     spot.set_albedo(model.surface.albedo);
     let whole = spot.passes(1.0).dot(GREY);
-    let level = (bare / whole).max(1e-12);
-    // What ink lets through, and the paper under it.
-    let hidden: u64 = grey
-        .par_iter_mut()
+    let level = (bare / spot.passes(1.0 / mean).dot(GREY)).max(1e-12);
+    let scale = 65535.0 / RANGE[1];
+    let of_place = |((value, rgb), class): ((&f32, &[u16; 3]), &u8)| -> (u16, bool) {
+        let Some(table) = tables.get(usize::from(*class)) else {
+            return (scale as u16, true);
+        };
+        let at = table.at(*rgb);
+        let hidden = at[1].exp() < table.hidden * whole;
+        let clear = match hidden {
+            true => 1.0,
+            // What ink lets through, and the paper under it.
+            false => clear(at, (f64::from(*value) / level).max(1e-9).ln()),
+        };
+        ((clear * scale).round() as u16, hidden)
+    };
+    let found = grey
+        .par_iter()
         .zip(side.albedo)
         .zip(side.classes)
-        .map(|((value, rgb), class)| {
-            let Some(table) = tables.get(usize::from(*class)) else {
-                return 0;
-            };
-            let at = table.at(*rgb);
-            let under = at[1].exp() < HIDDEN * whole;
-            *value = match under {
-                true => 1.0,
-                false => clear(at, (f64::from(*value) / level).max(1e-9).ln()) as f32,
-            };
-            u64::from(under)
-        })
-        .sum();
-    let mut sampled: Vec<f32> = every(&grey).copied().collect();
-    sampled.sort_by(f32::total_cmp);
+        .map(of_place);
+    let (map, hidden): (Vec<u16>, Vec<bool>) = found.unzip();
+    let count = map.len().max(1) as f64;
+    let mut sampled: Vec<u16> = map
+        .iter()
+        .step_by((map.len() / LEVELLED).max(1) | 1)
+        .copied()
+        .collect();
+    sampled.sort_unstable();
     let quantile = |share: f64| {
         let i = (share * sampled.len().saturating_sub(1) as f64) as usize;
-        sampled.get(i).map_or(1.0, |v| f64::from(*v))
+        sampled.get(i).map_or(1.0, |v| f64::from(*v) / scale)
     };
-    let mean = grey.iter().map(|v| f64::from(*v)).sum::<f64>() / grey.len().max(1) as f64;
-    let white = (quantile(0.999) * 1.05).clamp(0.1, RANGE[1]);
-    let map = grey
-        .par_iter()
-        .map(|v| ((f64::from(*v) / white).clamp(0.0, 1.0) * 65535.0).round() as u16)
-        .collect();
-    let told = Transmission {
-        levelled: frame.flat_field.is_some(),
+    Solved {
+        mean: map.iter().map(|v| f64::from(*v)).sum::<f64>() / count / scale,
         thickness_um,
-        passes,
-        hidden: hidden as f64 / grey.len().max(1) as f64,
-        spread: [0.05, 0.95].map(|share| quantile(share) / mean),
-        white: white / mean,
-    };
-    Ok(Some((map, told)))
+        hidden: hidden.iter().filter(|hidden| **hidden).count() as f64 / count,
+        spread: [quantile(0.05), quantile(0.95)],
+        map,
+    }
 }
 
 /// Grey of the photograph over that of the light table, and the share of it that is clipped.
@@ -245,13 +282,14 @@ fn of_bare(grey: &[f32], side: &Side<'_>) -> f64 {
     f64::from(*found.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
-/// The thickness in µm at which bare paper passes `bare` of a light table's light.
-fn thickness(model: &Model, bare: f64) -> f64 {
+/// The thickness in µm of the mean sheet at which paper that is `clear` passes `bare` of a light
+/// table's light.
+fn thickness(model: &Model, bare: f64, clear: f64) -> f64 {
     let passes = |um: f64| {
         let model = model.with(|paper| paper.thickness_um = um);
         let mut spot = model.spot(None);
         spot.set_albedo(model.surface.albedo);
-        spot.passes(1.0).dot(GREY)
+        spot.passes(clear).dot(GREY)
     };
     // A little more than what a sheet may have, so that what is beyond shows as that.
     let (mut low, mut high) = (0.9 * THICKNESS_UM[0], 1.1 * THICKNESS_UM[1]);
@@ -269,6 +307,8 @@ fn thickness(model: &Model, bare: f64) -> f64 {
 /// ln of what a place passes at each of [`CLEAR`], by its encoded colour.
 struct Table {
     nodes: Vec<[f32; 3]>,
+    /// As [`HIDDEN`].
+    hidden: f64,
 }
 
 impl Table {
@@ -286,7 +326,12 @@ impl Table {
                 },
             )
             .collect();
-        Self { nodes }
+        let covers = medium
+            .is_some_and(|medium| matches!(medium.matter, Matter::Particles(_) | Matter::Body(_)));
+        Self {
+            nodes,
+            hidden: HIDDEN[usize::from(covers)],
+        }
     }
 
     fn at(&self, rgb: [u16; 3]) -> [f64; 3] {

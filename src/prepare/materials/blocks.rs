@@ -10,7 +10,7 @@ use crate::prepare::capture::Crop;
 /// Blocks along the shorter side of a swatch, where it is large enough.
 const ALONG: usize = 6;
 /// The smallest block that leaves a core once its rim is gone.
-const LEAST_PX: usize = 2 * REACH + 2;
+const LEAST_PX: usize = 3 * REACH + 2;
 
 /// What a place is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -35,7 +35,7 @@ const LEARNT: usize = 500;
 /// Places of a class that choose or judge, at most.
 const JUDGED: usize = 2000;
 /// Starts of the network, of which the best is kept.
-const STARTS: u64 = 3;
+const STARTS: u64 = 2;
 /// Shares of all places, from the darkest, between which bare paper is looked for where no swatch
 /// shows it: as `maps::bare_albedo` does.
 const PAPER: [f64; 2] = [0.6, 0.9];

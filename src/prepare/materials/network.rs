@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_the_outputs() {
         const STEP: f64 = 1e-6;
-        let places = places(3, |i, ..| Some(i % 3));
+        let places = places(3, |i, _, _| Some(i % 3));
         let network = Network::start(&places, 3, 1);
         let features = &places[7].0;
         let mut row = vec![0.0; network.weights.len()];

@@ -24,7 +24,7 @@ use super::{
     capture::{Capture, Crop, Shots},
     colour::correct::Correction,
     depth::{self, InkDepth},
-    gloss::{self, Roughness, Samples},
+    gloss::{self, Amendment, Roughness, Samples},
     materials::{
         self, Known, Materials,
         features::{Gloss, Seen},
@@ -37,7 +37,7 @@ use super::{
     write::SideFiles,
 };
 use crate::{
-    colour::srgb_decode,
+    colour::{srgb_decode, srgb_encode},
     manifest::SideName,
     maps::{Level, Pyramid, Texels, bare_albedo},
     optics::medium::{Matter, Medium, MediumId},
@@ -113,19 +113,18 @@ impl Gathering {
         self.samples.add(band);
     }
 
-    /// Finds out what the side is made of, and writes its maps.
+    /// Finds out what the side is made of, puts its sRGB-encoded albedo right where a surface is
+    /// not paper's, and writes its maps.
     ///
     /// # Errors
     /// Where a photograph in transmitted light cannot be used, or a map cannot be written.
     pub fn finish(
         self,
         bench: &Bench<'_>,
+        albedo: &mut [[u16; 3]],
         maps: &SideFiles<'_>,
         scratch: &Path,
     ) -> Result<MatterReport, PrepareError> {
-        let Bench {
-            albedo, normals, ..
-        } = *bench;
         let Self {
             swatches,
             gloss,
@@ -135,7 +134,7 @@ impl Gathering {
         let seen = Seen {
             width: size[0],
             albedo,
-            normals,
+            normals: bench.normals,
             gloss: &gloss,
         };
         let classified = materials::classify(&seen, &swatches);
@@ -149,37 +148,6 @@ impl Gathering {
             None => vec![None],
         };
         let mut report = MatterReport::default();
-        let linear = |i: usize| DVec3::from(albedo[i].map(|v| srgb_decode(f64::from(v) / 65535.0)));
-        // Without media the paper is where the sheet is light, as a renderer takes it.
-        let paper = match &materials {
-            Some(_) => colour(&classes, 0, &linear, 1.0),
-            None => None,
-        };
-        let paper = paper.unwrap_or_else(|| DVec3::from(light(albedo, size)));
-        report.paper_albedo = paper.to_array();
-        let Some(model) = Model::laid(paper) else {
-            return Ok(report);
-        };
-        let mut media: Vec<Option<Medium>> = names
-            .iter()
-            .map(|name| name.map(|id| *id.medium()))
-            .collect();
-        for (class, medium) in media.iter_mut().enumerate() {
-            let found = medium.as_mut().and_then(|medium| match &mut medium.matter {
-                Matter::Particles(particles) => {
-                    let found = colour(&classes, class, &linear, COVERING)?.to_array();
-                    particles.albedo = found;
-                    Some(found)
-                }
-                Matter::Body(body) => {
-                    let found = colour(&classes, class, &linear, 1.0)?.to_array();
-                    body.albedo = found;
-                    Some(found)
-                }
-                _ => None,
-            });
-            report.albedo.push(found);
-        }
         let lit;
         let of_fit: &[u8] = match &materials {
             Some(_) => &classes,
@@ -188,16 +156,17 @@ impl Gathering {
                 &lit
             }
         };
-        let model = roughnesses(
-            &mut report,
-            model,
-            &mut media,
-            &names,
-            &samples,
+        let mut side = Sheet {
             bench,
-            of_fit,
-        );
+            albedo,
+            classes: of_fit,
+            samples: &samples,
+        };
+        let (model, media) = side.measure(&mut report, &names, materials.is_some(), size);
         drop(samples);
+        let Some(model) = model else {
+            return Ok(report);
+        };
         if let Some(materials) = &materials {
             let depths = depth::depths(&model, &media, &names, &classes, albedo);
             report.files = legend::files(&materials.media);
@@ -240,74 +209,147 @@ pub(super) struct Bench<'b> {
     pub correction: Option<&'b Correction>,
     /// What albedo was multiplied with.
     pub exposure: f64,
-    /// sRGB-encoded.
-    pub albedo: &'b [[u16; 3]],
     pub normals: &'b [[f32; 3]],
 }
 
-/// Fits the roughness of the paper first, which all else lies on.
-fn roughnesses(
-    report: &mut MatterReport,
-    model: Model,
-    media: &mut [Option<Medium>],
-    names: &[Option<MediumId>],
-    samples: &Samples,
-    bench: &Bench<'_>,
-    classes: &[u8],
-) -> Model {
-    let linear =
-        |i: usize| DVec3::from(bench.albedo[i].map(|v| srgb_decode(f64::from(v) / 65535.0)));
-    let corrected = |rgb: [f32; 3]| {
-        let rgb = rgb.map(f64::from);
-        let rgb = bench
-            .correction
-            .map_or(rgb, |correction| correction.apply(rgb));
-        DVec3::from(rgb) * bench.exposure
-    };
-    let sheet = gloss::Sheet {
-        classes,
-        normals: bench.normals,
-        albedo: &linear,
-        colour: &corrected,
-    };
-    let mut model = model;
-    for (class, (name, medium)) in names.iter().zip(media).enumerate() {
-        let places = samples.of_class(class as u8, &sheet);
-        let found = gloss::fit(&model, *name, medium.as_ref(), &places, bench.rig);
-        match (found.within, medium) {
-            (None, _) => {}
-            (Some(_), None) => model = model.with(|paper| paper.roughness = found.alpha),
-            (Some(_), Some(medium)) => match &mut medium.matter {
-                Matter::Film(film) => film.roughness = found.alpha,
-                Matter::Body(body) => body.roughness = found.alpha,
-                Matter::Particles(particles) => particles.roughness = found.alpha,
-                Matter::Paper(_) | Matter::Relief => {}
-            },
-        }
-        report.roughness.push(found);
-    }
-    model
+/// A side whose classes are known.
+struct Sheet<'s, 'b> {
+    bench: &'s Bench<'b>,
+    albedo: &'s mut [[u16; 3]],
+    classes: &'s [u8],
+    samples: &'s Samples,
 }
 
-/// Mean colour of a class's places between its quartiles of light, among the share `darkest` of
-/// them; `None` where it has none.
-fn colour(
-    classes: &[u8],
-    class: usize,
-    linear: &(impl Fn(usize) -> DVec3 + Sync),
-    darkest: f64,
-) -> Option<DVec3> {
-    let own: Vec<usize> = (0..classes.len())
-        .into_par_iter()
-        .filter(|i| usize::from(classes[*i]) == class)
-        .collect();
-    let step = (own.len() / COLOURED).max(1) | 1;
-    let mut found: Vec<DVec3> = own.into_iter().step_by(step).map(linear).collect();
-    found.sort_by(|a, b| a.element_sum().total_cmp(&b.element_sum()));
-    found.truncate(((found.len() as f64 * darkest).ceil() as usize).max(1));
-    let middle = found.get(found.len() / 4..(3 * found.len()).div_ceil(4))?;
-    let sum: DVec3 = middle.iter().sum();
-    (!middle.is_empty()).then(|| sum / middle.len() as f64)
+impl Sheet<'_, '_> {
+    /// Colour and roughness of the paper first, which all else lies on, and then of each medium.
+    /// `told`: whether swatches tell paper from media.
+    fn measure(
+        &mut self,
+        report: &mut MatterReport,
+        names: &[Option<MediumId>],
+        told: bool,
+        size: [usize; 2],
+    ) -> (Option<Model>, Vec<Option<Medium>>) {
+        let mut media: Vec<Option<Medium>> = names
+            .iter()
+            .map(|name| name.map(|id| *id.medium()))
+            .collect();
+        // Without media the paper is where the sheet is light, as a renderer takes it.
+        let paper = |side: &Self| {
+            let found = if told { side.colour(0, 1.0) } else { None };
+            found.unwrap_or_else(|| DVec3::from(light(side.albedo, size)))
+        };
+        report.albedo = vec![None; names.len()];
+        let Some(mut model) = Model::laid(paper(self)) else {
+            return (None, media);
+        };
+        for class in 0..names.len() {
+            self.set_colour(class, &mut media);
+            let (found, amendment) = self.fit(&model, names[class], media[class].as_ref(), class);
+            // Where light and dark are all that is known, a step between them would be seen.
+            if let Some(amendment) = amendment.filter(|_| told) {
+                self.amend(class, &amendment);
+            }
+            report.albedo[class] = self.set_colour(class, &mut media);
+            let alpha = found.within.map(|_| found.alpha);
+            match &mut media[class] {
+                None => {
+                    let albedo = paper(self).to_array();
+                    model = model.with(|paper| {
+                        paper.albedo = albedo;
+                        paper.roughness = alpha.unwrap_or(paper.roughness);
+                    });
+                    report.paper_albedo = albedo;
+                }
+                Some(medium) => set_roughness(medium, alpha),
+            }
+            report.roughness.push(found);
+        }
+        (Some(model), media)
+    }
+
+    fn fit(
+        &self,
+        model: &Model,
+        name: Option<MediumId>,
+        medium: Option<&Medium>,
+        class: usize,
+    ) -> (Roughness, Option<Amendment>) {
+        let Bench {
+            normals,
+            rig,
+            correction,
+            exposure,
+            ..
+        } = *self.bench;
+        let corrected = |rgb: [f32; 3]| {
+            let rgb = rgb.map(f64::from);
+            let rgb = correction.map_or(rgb, |correction| correction.apply(rgb));
+            DVec3::from(rgb) * exposure
+        };
+        let sheet = gloss::Sheet {
+            classes: self.classes,
+            normals,
+            albedo: &|i| linear(self.albedo[i]),
+            colour: &corrected,
+        };
+        let places = self.samples.of_class(class as u8, &sheet);
+        gloss::fit(model, name, medium, &places, rig)
+    }
+
+    fn amend(&mut self, class: usize, amendment: &Amendment) {
+        let (classes, normals) = (self.classes, self.bench.normals);
+        let places = self.albedo.par_iter_mut().zip(classes).zip(normals);
+        places.for_each(|((rgb, of), normal)| {
+            if usize::from(*of) == class {
+                let normal = DVec3::from(normal.map(f64::from));
+                let amended = amendment.apply(linear(*rgb), normal);
+                // Casts saturate.
+                *rgb = amended
+                    .to_array()
+                    .map(|v| (srgb_encode(v).clamp(0.0, 1.0) * 65535.0).round() as u16);
+            }
+        });
+    }
+
+    /// Sets the colour of grains and body colour at full coverage, and gives it.
+    fn set_colour(&self, class: usize, media: &mut [Option<Medium>]) -> Option<[f64; 3]> {
+        let (albedo, share) = match &mut media[class].as_mut()?.matter {
+            Matter::Particles(particles) => (&mut particles.albedo, COVERING),
+            Matter::Body(body) => (&mut body.albedo, 1.0),
+            _ => return None,
+        };
+        *albedo = self.colour(class, share)?.to_array();
+        Some(*albedo)
+    }
+
+    /// Mean colour of a class's places between their quartiles of light, among the share `darkest`
+    /// of them; `None` where it has none.
+    fn colour(&self, class: usize, darkest: f64) -> Option<DVec3> {
+        let own = (0..self.classes.len()).filter(|i| usize::from(self.classes[*i]) == class);
+        let count = own.clone().count();
+        let step = (count / COLOURED).max(1) | 1;
+        let mut found: Vec<DVec3> = own.step_by(step).map(|i| linear(self.albedo[i])).collect();
+        found.sort_by(|a, b| a.element_sum().total_cmp(&b.element_sum()));
+        found.truncate(((found.len() as f64 * darkest).ceil() as usize).max(1));
+        let middle = found.get(found.len() / 4..(3 * found.len()).div_ceil(4))?;
+        let sum: DVec3 = middle.iter().sum();
+        (!middle.is_empty()).then(|| sum / middle.len() as f64)
+    }
+}
+
+fn linear(rgb: [u16; 3]) -> DVec3 {
+    DVec3::from(rgb.map(|v| srgb_decode(f64::from(v) / 65535.0)))
+}
+
+fn set_roughness(medium: &mut Medium, alpha: Option<f64>) {
+    let of = match &mut medium.matter {
+        Matter::Film(film) => &mut film.roughness,
+        Matter::Body(body) => &mut body.roughness,
+        Matter::Particles(particles) => &mut particles.roughness,
+        Matter::Paper(_) | Matter::Relief => return,
+    };
+    *of = alpha.unwrap_or(*of);
 }
 
 /// Linear albedo of the sheet where it is light, as `maps::bare_albedo` takes it.
