@@ -45,8 +45,11 @@ const STEPS: [usize; 2] = [5, 3];
 const NOISE: [f64; 2] = [0.0015, 0.01];
 /// How many times the noise is an outlier.
 const OUTLIER: f64 = 3.0;
-/// How well stereo knows a normal where it did not know the gloss.
-const NORMAL_OFF: f64 = 0.1;
+/// How well stereo knows a slope where it did not know the gloss.
+const SLOPE_OFF: f64 = 0.3;
+/// Shares of stereo's slope that each place's fit starts from, the first time: a narrow gleam has
+/// turned it towards a lamp.
+const STARTS: [f64; 3] = [1.0, 0.5, 0.0];
 /// A bound wider than this share of the roughness says nothing.
 const WIDEST: f64 = 0.25;
 /// Standard deviations of the bound that is told.
@@ -387,6 +390,7 @@ impl<'f> Fit<'f> {
     /// The sum of what is left over at this roughness, outliers by their weight.
     fn at(&mut self, alpha: f64) -> f64 {
         self.spot.set_roughness(alpha);
+        let starts: &[f64] = if self.first { &STARTS } else { &[1.0] };
         let steps = STEPS[usize::from(!self.first)];
         self.first = false;
         let (spot, places, lamps) = (&self.spot, self.places, &self.lamps);
@@ -396,7 +400,18 @@ impl<'f> Fit<'f> {
             .enumerate()
             .map_init(
                 || spot.clone(),
-                |spot, (i, found)| settle(spot, &places[i], &lamps[i], found, steps),
+                |spot, (i, found)| {
+                    let settled = starts.iter().map(|share| {
+                        let mut start = *found;
+                        start[..2].iter_mut().for_each(|slope| *slope *= share);
+                        let left = settle(spot, &places[i], &lamps[i], &mut start, steps);
+                        (left, start)
+                    });
+                    let best = settled.min_by(|a, b| a.0.total_cmp(&b.0));
+                    let (left, start) = best.unwrap_or((0.0, *found));
+                    *found = start;
+                    left
+                },
             )
             .collect();
         sums.iter().sum()
@@ -464,7 +479,7 @@ fn sum(off: &[DVec3], place: &Place, found: &[f64; 5]) -> f64 {
         })
     });
     let known = slopes(place.normal);
-    let moved = (0..2).map(|i| ((found[i] - known[i]) / NORMAL_OFF).powi(2));
+    let moved = (0..2).map(|i| ((found[i] - known[i]) / SLOPE_OFF).powi(2));
     each.sum::<f64>() + moved.sum::<f64>()
 }
 
@@ -492,8 +507,8 @@ fn settle(
         let mut a = vec![vec![0.0; 5]; 5];
         let mut right = vec![0.0; 5];
         for i in 0..2 {
-            a[i][i] += 1.0 / (NORMAL_OFF * NORMAL_OFF);
-            right[i] += (known[i] - found[i]) / (NORMAL_OFF * NORMAL_OFF);
+            a[i][i] += 1.0 / (SLOPE_OFF * SLOPE_OFF);
+            right[i] += (known[i] - found[i]) / (SLOPE_OFF * SLOPE_OFF);
         }
         for (k, shown) in place.shown.iter().enumerate() {
             for c in 0..3 {

@@ -262,14 +262,7 @@ fn prepare_side(
         scratch,
     )?;
     while let Some(mut band) = stack.next()? {
-        for (planes, field) in band.planes.iter_mut().zip(&fields) {
-            let [r, g, b] = planes;
-            for row in 0..band.rows {
-                let range = row * band.width..(row + 1) * band.width;
-                let planes = [&mut r[range.clone()], &mut g[range.clone()], &mut b[range]];
-                field.divide(band.top + row, planes);
-            }
-        }
+        band.divide(&fields);
         let mut solved = solver.solve(Rows {
             planes: &band.planes,
             width: band.width,
@@ -304,9 +297,10 @@ fn prepare_side(
         rig,
         correction,
         exposure: assumed_exposure.unwrap_or(1.0),
-        normals: &normals,
+        fields: &fields,
+        solver: &solver,
     };
-    let matter = gathering.finish(&bench, &mut encoded, &maps, scratch)?;
+    let matter = gathering.finish(&bench, &mut encoded, &mut normals, &maps, scratch)?;
     tell("writing maps", 0.6);
     maps.albedo(&encoded)?;
     drop(encoded);

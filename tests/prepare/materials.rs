@@ -164,17 +164,24 @@ fn ink_is_as_deep_as_it_lies() {
     let map = pixels(&out.join("maps/recto/ink-depth.png"));
     let found = classes(out);
     for (class, name) in [(1, "iron-gall-ink"), (2, "wash")] {
-        let (mut off, mut sum, mut count) = (0.0, 0.0, 0.0);
+        let (mut off, mut bias, mut sum, mut count) = (0.0, 0.0, 0.0, 0.0);
         for (i, pixel) in map.iter().enumerate() {
             let lies = lies(i % WIDTH, i / WIDTH);
             if lies.class() == class && found[i] == class {
                 let truth = stand.media.depth(lies).y;
-                off += (f64::from(pixel[0]) * matter.depth_white - truth).abs();
+                let found = f64::from(pixel[0]) * matter.depth_white;
+                off += (found - truth).abs();
+                bias += found - truth;
                 sum += truth;
                 count += 1.0;
             }
         }
-        eprintln!("{name}: τ {:.3}, off by {:.4}", sum / count, off / count);
+        eprintln!(
+            "{name}: τ {:.3}, off by {:.4}, on the whole by {:.4}",
+            sum / count,
+            off / count,
+            bias / count
+        );
         assert!(off / sum < DEPTH, "{name}: {}", off / sum);
         let ink = matter.inks.iter().find(|ink| ink.medium == medium(name));
         let ink = ink.expect("an ink");

@@ -8,9 +8,11 @@
 //! | roughness of each class | [`super::gloss`] |
 //! | depth of each ink | [`super::depth`] |
 //! | the sheet on a light table | [`super::transmission`] |
+//! | ink solved again, its gloss known | `again` |
 //! | lines of a manifest | `lines` |
 //! | the report's page | `page` |
 
+mod again;
 mod lines;
 mod page;
 
@@ -24,6 +26,7 @@ use super::{
     capture::{Capture, Crop, Shots},
     colour::correct::Correction,
     depth::{self, InkDepth},
+    flat_field::FlatField,
     gloss::{self, Amendment, Roughness, Samples},
     materials::{
         self, Known, Materials,
@@ -32,7 +35,7 @@ use super::{
     },
     model::Model,
     photographs::Band,
-    stereo::{Rig, Solved},
+    stereo::{Paper, Rig, Solved, Solver},
     transmission::{self, Transmission},
     write::SideFiles,
 };
@@ -113,8 +116,8 @@ impl Gathering {
         self.samples.add(band);
     }
 
-    /// Finds out what the side is made of, puts its sRGB-encoded albedo right where a surface is
-    /// not paper's, and writes its maps.
+    /// Finds out what the side is made of, puts its sRGB-encoded albedo and its normals right where
+    /// a surface is not paper's, and writes its maps.
     ///
     /// # Errors
     /// Where a photograph in transmitted light cannot be used, or a map cannot be written.
@@ -122,6 +125,7 @@ impl Gathering {
         self,
         bench: &Bench<'_>,
         albedo: &mut [[u16; 3]],
+        normals: &mut [[f32; 3]],
         maps: &SideFiles<'_>,
         scratch: &Path,
     ) -> Result<MatterReport, PrepareError> {
@@ -134,7 +138,7 @@ impl Gathering {
         let seen = Seen {
             width: size[0],
             albedo,
-            normals: bench.normals,
+            normals,
             gloss: &gloss,
         };
         let classified = materials::classify(&seen, &swatches);
@@ -159,10 +163,15 @@ impl Gathering {
         let mut side = Sheet {
             bench,
             albedo,
+            normals,
             classes: of_fit,
             samples: &samples,
+            told: materials.is_some(),
+            size,
         };
-        let (model, media) = side.measure(&mut report, &names, materials.is_some(), size);
+        let (_, media) = side.measure(&mut report, &names, false);
+        side.solve_again(&media, scratch)?;
+        let (model, media) = side.measure(&mut report, &names, materials.is_some());
         drop(samples);
         let Some(model) = model else {
             return Ok(report);
@@ -209,26 +218,32 @@ pub(super) struct Bench<'b> {
     pub correction: Option<&'b Correction>,
     /// What albedo was multiplied with.
     pub exposure: f64,
-    pub normals: &'b [[f32; 3]],
+    pub fields: &'b [FlatField],
+    /// By which the photographs were solved.
+    pub solver: &'b Solver,
 }
 
 /// A side whose classes are known.
 struct Sheet<'s, 'b> {
     bench: &'s Bench<'b>,
     albedo: &'s mut [[u16; 3]],
+    normals: &'s mut [[f32; 3]],
     classes: &'s [u8],
     samples: &'s Samples,
+    /// Whether swatches tell paper from media.
+    told: bool,
+    /// In pixels.
+    size: [usize; 2],
 }
 
 impl Sheet<'_, '_> {
     /// Colour and roughness of the paper first, which all else lies on, and then of each medium.
-    /// `told`: whether swatches tell paper from media.
+    /// `amends`: whether albedo is put right by it.
     fn measure(
         &mut self,
         report: &mut MatterReport,
         names: &[Option<MediumId>],
-        told: bool,
-        size: [usize; 2],
+        amends: bool,
     ) -> (Option<Model>, Vec<Option<Medium>>) {
         let mut media: Vec<Option<Medium>> = names
             .iter()
@@ -236,9 +251,10 @@ impl Sheet<'_, '_> {
             .collect();
         // Without media the paper is where the sheet is light, as a renderer takes it.
         let paper = |side: &Self| {
-            let found = if told { side.colour(0, 1.0) } else { None };
-            found.unwrap_or_else(|| DVec3::from(light(side.albedo, size)))
+            let found = if side.told { side.colour(0, 1.0) } else { None };
+            found.unwrap_or_else(|| DVec3::from(light(side.albedo, side.size)))
         };
+        report.roughness.clear();
         report.albedo = vec![None; names.len()];
         let Some(mut model) = Model::laid(paper(self)) else {
             return (None, media);
@@ -247,7 +263,7 @@ impl Sheet<'_, '_> {
             self.set_colour(class, &mut media);
             let (found, amendment) = self.fit(&model, names[class], media[class].as_ref(), class);
             // Where light and dark are all that is known, a step between them would be seen.
-            if let Some(amendment) = amendment.filter(|_| told) {
+            if let Some(amendment) = amendment.filter(|_| amends) {
                 self.amend(class, &amendment);
             }
             report.albedo[class] = self.set_colour(class, &mut media);
@@ -268,6 +284,39 @@ impl Sheet<'_, '_> {
         (Some(model), media)
     }
 
+    /// Solves films and body colours again whose surface differs from that of paper.
+    fn solve_again(
+        &mut self,
+        media: &[Option<Medium>],
+        scratch: &Path,
+    ) -> Result<(), PrepareError> {
+        /// Nearer to each other, roughnesses turn no normal by a degree.
+        const ALIKE: f64 = 0.05;
+        let Some(paper) = Model::laid(DVec3::ONE).map(|model| model.paper()) else {
+            return Ok(());
+        };
+        let glossy = media.iter().enumerate().filter_map(|(class, medium)| {
+            let alpha = match medium.as_ref()?.matter {
+                Matter::Film(film) => film.roughness,
+                Matter::Body(body) => body.roughness,
+                _ => return None,
+            };
+            ((alpha - paper.roughness).abs() > ALIKE).then(|| again::Glossy {
+                class: class as u8,
+                surface: Paper::new(alpha, paper.index, 1.0),
+            })
+        });
+        let glossy: Vec<again::Glossy> = glossy.collect();
+        again::solve(
+            self.bench,
+            scratch,
+            &glossy,
+            self.classes,
+            self.albedo,
+            self.normals,
+        )
+    }
+
     fn fit(
         &self,
         model: &Model,
@@ -276,7 +325,6 @@ impl Sheet<'_, '_> {
         class: usize,
     ) -> (Roughness, Option<Amendment>) {
         let Bench {
-            normals,
             rig,
             correction,
             exposure,
@@ -289,7 +337,7 @@ impl Sheet<'_, '_> {
         };
         let sheet = gloss::Sheet {
             classes: self.classes,
-            normals,
+            normals: self.normals,
             albedo: &|i| linear(self.albedo[i]),
             colour: &corrected,
         };
@@ -298,8 +346,8 @@ impl Sheet<'_, '_> {
     }
 
     fn amend(&mut self, class: usize, amendment: &Amendment) {
-        let (classes, normals) = (self.classes, self.bench.normals);
-        let places = self.albedo.par_iter_mut().zip(classes).zip(normals);
+        let places = self.albedo.par_iter_mut().zip(self.classes);
+        let places = places.zip(&*self.normals);
         places.for_each(|((rgb, of), normal)| {
             if usize::from(*of) == class {
                 let normal = DVec3::from(normal.map(f64::from));
