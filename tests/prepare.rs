@@ -8,8 +8,14 @@ mod capture;
 mod chain;
 #[path = "prepare/colour.rs"]
 mod colour;
+#[path = "prepare/gloss.rs"]
+mod gloss;
 #[path = "prepare/lights.rs"]
 mod lights;
+#[path = "prepare/made.rs"]
+mod made;
+#[path = "prepare/materials.rs"]
+mod materials;
 #[path = "prepare/photographs.rs"]
 mod photographs;
 
@@ -17,6 +23,8 @@ mod photographs;
 mod relief;
 #[path = "prepare/stereo.rs"]
 mod stereo;
+#[path = "prepare/transmission.rs"]
+mod transmission;
 
 /// A folder that lives as long as the test.
 fn folder() -> tempfile::TempDir {

@@ -9,6 +9,12 @@
 //! | a camera's colours → the sheet's | [`colour`] |
 //! | photographs under lamps → albedo and normals | [`stereo`] |
 //! | normals → the sheet's shape and its grain, in mm | [`relief`] |
+//! | the paper that maps are shown by, for fits that undo it | [`model`] |
+//! | swatches → what each place is drawn with | [`materials`] |
+//! | photographs of a material → its roughness | [`gloss`] |
+//! | a picture of ink → its depth | [`depth`] |
+//! | the sheet on a light table → what its paper passes | [`transmission`] |
+//! | these four for a side | [`matter`] |
 //! | all of it, as a command does it | [`run`] |
 //!
 //! Lamps and normals are in the sheet's frame: x right, y up in the photograph, z towards the
@@ -16,15 +22,21 @@
 
 pub mod capture;
 pub mod colour;
+pub mod depth;
 pub mod find;
 pub mod flat_field;
+pub mod gloss;
 pub mod lights;
 pub mod linear;
+pub mod materials;
+pub mod matter;
+pub mod model;
 pub mod photographs;
 pub mod relief;
 mod report;
 mod run;
 pub mod stereo;
+pub mod transmission;
 mod write;
 
 pub use run::{LampFound, PrepareError, Progress, Report, SideReport, run};

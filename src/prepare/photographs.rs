@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::capture::Crop;
+use super::{capture::Crop, flat_field::FlatField};
 use crate::maps::{ColourEncoding, ColourRows, MapError};
 
 /// What a band may take in memory, in bytes.
@@ -52,6 +52,20 @@ impl Band {
         self.planes[photograph]
             .each_ref()
             .map(|plane| &plane[range.clone()])
+    }
+}
+
+impl Band {
+    /// Divides each photograph by its lamp's light; leaves them as they are without `fields`.
+    pub fn divide(&mut self, fields: &[FlatField]) {
+        for (planes, field) in self.planes.iter_mut().zip(fields) {
+            let [r, g, b] = planes;
+            for row in 0..self.rows {
+                let range = row * self.width..(row + 1) * self.width;
+                let planes = [&mut r[range.clone()], &mut g[range.clone()], &mut b[range]];
+                field.divide(self.top + row, planes);
+            }
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use super::{
     PrepareError,
     capture::{Capture, Light, Places},
     colour::chart::COLORCHECKER24,
+    matter,
     run::Report,
 };
 use crate::{
@@ -140,6 +141,7 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
             side.grain_um[0],
             side.grain_um[1],
         );
+        out += &matter::page(side);
         for (kind, words) in [
             ("albedo", "Albedo"),
             ("normal", "Normals of grain and strokes"),
@@ -147,8 +149,18 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
                 "shape",
                 "Shape at large, from the lowest place (black) to the highest",
             ),
+            ("media", "Materials, in the colours of the table"),
+            ("ink-depth", "Depth of the ink: the darker, the deeper"),
+            (
+                "transmission",
+                "What the paper passes of light, ink taken out",
+            ),
         ] {
             let path = folder.join(preview_name(side.side, kind));
+            // Not every side has all of them.
+            if !path.exists() {
+                continue;
+            }
             let bytes = fs::read(&path).map_err(|reason| PrepareError::Folder { path, reason })?;
             let _ = write!(
                 out,
@@ -191,7 +203,7 @@ fn sources(capture: &Capture, report: &Report) -> String {
     format!(
         "<h2>What is measured</h2><table><tr><td>Places of the lamps<td>{lamps}<tr><td>Their \
          light<td>{light}<tr><td>Colour<td>{colour}<tr><td>Albedo's level<td>{exposure}<tr><td>\
-         Normals<td>measured<tr><td>Heights<td>{height}<tr><td>Paper, roughness, media<td>assumed\
-         </table>"
+         Normals<td>measured<tr><td>Heights<td>{height}{}</table>",
+        matter::sources(capture, report)
     )
 }

@@ -14,6 +14,7 @@ use super::{
     find::{self, FoundLamps},
     flat_field::FlatFieldError,
     lights::{self, Ill, sphere::NoHighlight},
+    matter::{Bench, Gathering, MatterReport},
     photographs::{Stack, StackError},
     relief::{
         compare::{range, remove_plane},
@@ -22,6 +23,7 @@ use super::{
     },
     report,
     stereo::{Gain, Response, Rig, Rows, Solver, Standing},
+    transmission::TransmissionError,
     write::{self, SideFiles, SideText},
 };
 use crate::{
@@ -52,6 +54,11 @@ pub enum PrepareError {
     Chart { path: PathBuf, why: ChartError },
     #[error("{}: no place is lit in all photographs; check the order of the lamps, or write intensities = \"equal\"", path.display())]
     Dark { path: PathBuf },
+    #[error("{}: {why}", path.display())]
+    Transmitted {
+        path: PathBuf,
+        why: TransmissionError,
+    },
     #[error("{}: an exhibit is there already; choose another folder or remove the file", .0.display())]
     Exists(PathBuf),
     #[error("{}: {reason}", path.display())]
@@ -106,6 +113,8 @@ pub struct SideReport {
     pub shape_um: [f64; 2],
     /// Of grain and strokes.
     pub grain_um: [f64; 2],
+    /// What it is made of.
+    pub matter: MatterReport,
 }
 
 /// Makes maps of a capture, a manifest that shows them and a report, in the folder `out`, which
@@ -243,6 +252,7 @@ fn prepare_side(
     let mut albedo: [Vec<f32>; 3] = [0, 1, 2].map(|_| Vec::with_capacity(count));
     let mut residuals = Histogram::default();
     let mut doubted = 0;
+    let mut gathering = Gathering::new(capture, side, shots);
     let ambient = shots.ambient.as_deref();
     let mut stack = Stack::open(
         &shots.photographs,
@@ -252,19 +262,13 @@ fn prepare_side(
         scratch,
     )?;
     while let Some(mut band) = stack.next()? {
-        for (planes, field) in band.planes.iter_mut().zip(&fields) {
-            let [r, g, b] = planes;
-            for row in 0..band.rows {
-                let range = row * band.width..(row + 1) * band.width;
-                let planes = [&mut r[range.clone()], &mut g[range.clone()], &mut b[range]];
-                field.divide(band.top + row, planes);
-            }
-        }
+        band.divide(&fields);
         let mut solved = solver.solve(Rows {
             planes: &band.planes,
             width: band.width,
             top: band.top,
         });
+        gathering.add(&band, &solved, rig);
         if let Some(correction) = correction {
             let [r, g, b] = &mut solved.albedo;
             correction.apply_planes([r, g, b]);
@@ -277,15 +281,27 @@ fn prepare_side(
         doubted += solved.doubted;
         tell(
             "solving",
-            0.1 + 0.5 * (band.top + band.rows) as f64 / size[1] as f64,
+            0.1 + 0.4 * (band.top + band.rows) as f64 / size[1] as f64,
         );
     }
     let measured = matches!(capture.lamps.light, Light::FlatField { .. }) || correction.is_some();
     let assumed_exposure = (!measured).then(|| exposure(&albedo[1]));
-    let encoded = encoded(&albedo, assumed_exposure.unwrap_or(1.0));
+    let mut encoded = encoded(&albedo, assumed_exposure.unwrap_or(1.0));
     drop(albedo);
-    tell("writing maps", 0.6);
+    tell("materials", 0.5);
     let maps = SideFiles::new(side, size, capture, scratch)?;
+    let bench = Bench {
+        capture,
+        side,
+        shots,
+        rig,
+        correction,
+        exposure: assumed_exposure.unwrap_or(1.0),
+        fields: &fields,
+        solver: &solver,
+    };
+    let matter = gathering.finish(&bench, &mut encoded, &mut normals, &maps, scratch)?;
+    tell("writing maps", 0.6);
     maps.albedo(&encoded)?;
     drop(encoded);
     tell("relief", 0.7);
@@ -323,6 +339,7 @@ fn prepare_side(
         assumed_exposure,
         shape_um,
         grain_um,
+        matter,
     };
     Ok((text, report))
 }

@@ -8,7 +8,14 @@ use std::{
 
 use rayon::prelude::*;
 
-use super::{PrepareError, capture::Capture, report, run::Report};
+use super::{
+    PrepareError,
+    capture::Capture,
+    depth::Depths,
+    materials::legend::{self, MediaFile},
+    matter, report,
+    run::Report,
+};
 use crate::{
     manifest::{MANIFEST, SideName, check_shape},
     maps::encode::{save_png_grey16, save_png_rgb16, write_whole},
@@ -26,7 +33,8 @@ pub(super) struct SideText {
     size: [usize; 2],
 }
 
-fn word(side: SideName) -> &'static str {
+/// What a side is called in a manifest.
+pub(super) fn word(side: SideName) -> &'static str {
     match side {
         SideName::Recto => "recto",
         SideName::Verso => "verso",
@@ -65,6 +73,11 @@ impl<'s> SideFiles<'s> {
         })
     }
 
+    /// Width and height in pixels.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
     fn preview(
         &self,
         kind: &str,
@@ -93,6 +106,39 @@ impl<'s> SideFiles<'s> {
         )?;
         let at = |i: usize| albedo[i].map(|v| (v >> 8) as u8);
         self.preview("albedo", self.size[0], &at, albedo.len())
+    }
+
+    /// Writes the class of each place to `files`.
+    pub fn media(&self, files: &[MediaFile], classes: &[u8]) -> Result<(), PrepareError> {
+        legend::write(files, classes, self.size, self.dpi, &self.within)?;
+        let at = |i: usize| match classes[i] {
+            0 => [255; 3],
+            class => legend::colour(usize::from(class)),
+        };
+        self.preview("media", self.size[0], &at, classes.len())
+    }
+
+    /// Writes the depths of ink, where there is any.
+    pub fn depth(&self, depths: &Depths) -> Result<(), PrepareError> {
+        if depths.map.is_empty() {
+            return Ok(());
+        }
+        self.grey16(&self.within.join("ink-depth.png"), &depths.map)?;
+        let at = |i: usize| [255 - (depths.map[i] >> 8) as u8; 3];
+        self.preview("ink-depth", self.size[0], &at, depths.map.len())
+    }
+
+    /// Writes what paper passes over the mean sheet; there is one for both sides.
+    pub fn transmission(&self, map: &[u16]) -> Result<(), PrepareError> {
+        self.grey16(&self.folder.join(MAPS).join("transmission.png"), map)?;
+        let at = |i: usize| [(map[i] >> 8) as u8; 3];
+        self.preview("transmission", self.size[0], &at, map.len())
+    }
+
+    fn grey16(&self, path: &Path, values: &[u16]) -> Result<(), PrepareError> {
+        let [w, h] = self.size.map(|v| v as u32);
+        save_png_grey16(path, w, h, values, Some(self.dpi))?;
+        Ok(())
     }
 
     /// Writes unit normals of grain and strokes.
@@ -135,10 +181,8 @@ impl<'s> SideFiles<'s> {
     /// Writes heights of grain and strokes in µm, the last of the maps, and gives the lines of a
     /// manifest about the side.
     pub fn grain(self, um: &[f64], surface: String) -> Result<SideText, PrepareError> {
-        let [w, h] = self.size.map(|v| v as u32);
         let levels = Levels::new(um);
-        let path = self.within.join("height.png");
-        save_png_grey16(&path, w, h, &levels.values, Some(self.dpi))?;
+        self.grey16(&self.within.join("height.png"), &levels.values)?;
         let name = word(self.side);
         let text = format!(
             "albedo = {{ file = \"{MAPS}/{name}/albedo.png\", encoding = \"srgb\" }}\n\
@@ -191,23 +235,26 @@ pub(super) fn manifest(
         "# Made by `recto prepare` from {} photographs; report.html says how well. `recto schema`\n\
          # prints what an editor needs to check this file while you type.\n\n\
          [exhibit]\ntitle = {{ en = {title} }}\n\n\
-         [[drawing]]\nid = {id}\nsize_mm = [{width:?}, {height:?}]\n\
-         # What it is made of was not measured.\npaper = {{ kind = \"laid\", source = \"assumed\" }}\n\n",
+         [[drawing]]\nid = {id}\nsize_mm = [{width:?}, {height:?}]\n{paper}\n",
         report.lamps.len(),
         title = toml::Value::from(title),
         id = toml::Value::from(capture.id.as_str()),
+        paper = matter::paper_line(report),
     );
-    for side in sides {
+    for (side, found) in sides.iter().zip(&report.sides) {
         if !side.surface.is_empty() {
             text += &side.surface;
             text += "\n";
         }
         text += &format!("[drawing.{}]\n{}", word(side.side), side.text);
+        text += &matter::side_lines(found);
         if side.side == SideName::Verso {
             text += "register = { flip = \"horizontal\" }\n";
         }
         text += "\n";
     }
+    text += &matter::drawing_lines(report);
+    text += &matter::media_lines(report);
     // Lamps as they stood, so that the photographs can be looked at again.
     for (i, lamp) in report.lamps.iter().enumerate().take(8) {
         text += &format!(

@@ -200,7 +200,7 @@ record! {
             photograph: CapturePath,
         }
         optional {
-            /// The light table alone.
+            /// The light table alone, at the same exposure.
             flat_field: CapturePath,
         }
         rules []

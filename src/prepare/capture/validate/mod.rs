@@ -69,8 +69,8 @@ impl Validator<'_, '_> {
         let transmitted = raw.transmitted.as_ref();
         let transmitted =
             transmitted.map(|raw| self.transmitted(raw, size, &root.key("transmitted")));
-        let verso_size = verso.as_ref().and_then(|verso| Some(verso.as_ref()?.size));
-        let swatches = self.swatches(raw, size, verso_size, &root.key("swatch"));
+        let of_verso = verso.as_ref().and_then(Option::as_ref);
+        let swatches = self.swatches(raw, recto.as_ref(), of_verso, &root.key("swatch"));
         Some(Capture {
             file: file.to_owned(),
             id: raw.id.as_str().to_owned(),
@@ -285,15 +285,15 @@ impl Validator<'_, '_> {
     fn swatches(
         &mut self,
         raw: &RawCapture,
-        recto: Option<[u32; 2]>,
-        verso: Option<[u32; 2]>,
+        recto: Option<&Shots>,
+        verso: Option<&Shots>,
         trail: &Trail,
     ) -> Vec<Swatch> {
         let mut swatches = Vec::new();
         for (i, swatch) in raw.swatch.iter().flat_map(|list| list.iter()) {
             let trail = trail.index(i);
             let side = swatch.side.unwrap_or_default();
-            let size = match side {
+            let shots = match side {
                 SideName::Recto => recto,
                 SideName::Verso => verso,
             };
@@ -307,12 +307,42 @@ impl Validator<'_, '_> {
                 continue;
             }
             let medium = self.medium(swatch, &trail);
-            let rect = size.and_then(|size| self.rect(swatch.rect_px, size, &trail.key("rect_px")));
+            let rect = shots.and_then(|shots| self.on_sheet(swatch.rect_px, shots, &trail));
             if let (Some(medium), Some(rect)) = (medium, rect) {
                 swatches.push(Swatch { side, medium, rect });
             }
         }
         swatches
+    }
+
+    /// The rectangle of a swatch, which has to lie on what is the sheet.
+    fn on_sheet(&mut self, edges: [PixelPx; 4], shots: &Shots, trail: &Trail) -> Option<Crop> {
+        let trail = trail.key("rect_px");
+        let rect = self.rect(edges, shots.size, &trail)?;
+        let crop = shots.crop;
+        let within = rect.left >= crop.left
+            && rect.top >= crop.top
+            && rect.right <= crop.right
+            && rect.bottom <= crop.bottom;
+        if within {
+            return Some(rect);
+        }
+        let Crop {
+            left,
+            top,
+            right,
+            bottom,
+        } = rect;
+        let words = Words::new(
+            format!("edges at {left}, {top}, {right} and {bottom}"),
+            format!(
+                "edges within crop_px: {}, {}, {} and {}",
+                crop.left, crop.top, crop.right, crop.bottom
+            ),
+            "choose a place on the sheet, or correct crop_px",
+        );
+        self.report.fault(&trail, words);
+        None
     }
 
     /// `Some(None)` for bare paper.

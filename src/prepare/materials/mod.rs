@@ -1,0 +1,287 @@
+//! Materials: what each place of a side is drawn with, learnt from swatches.
+//!
+//! | step | where |
+//! |---|---|
+//! | what is seen of a place | [`features`] |
+//! | swatches → places to learn from, to choose by, to be judged by | [`blocks`] |
+//! | a small network, by Levenberg and Marquardt's method | [`network`] |
+//! | what it has to beat: a linear discriminant | [`discriminant`] |
+//! | what is taken for what | [`confusion`] |
+//! | classes → a picture with a legend | [`legend`] |
+
+pub mod blocks;
+pub mod confusion;
+pub mod discriminant;
+pub mod features;
+pub mod legend;
+pub mod network;
+
+use std::fmt;
+
+use rayon::prelude::*;
+
+use self::{
+    blocks::{Blocks, Part},
+    confusion::Confusion,
+    discriminant::Discriminant,
+    features::{Features, Seen},
+    network::Network,
+};
+use super::capture::Crop;
+use crate::optics::medium::MediumId;
+
+/// Places of a class that are learnt from, at most.
+const LEARNT: usize = 500;
+/// Places of a class that choose or judge, at most.
+const JUDGED: usize = 2000;
+/// Starts of the network, of which the best is kept.
+const STARTS: u64 = 2;
+/// Shares of all places, from the darkest, between which bare paper is looked for where no swatch
+/// shows it: as `maps::bare_albedo` does.
+const PAPER: [f64; 2] = [0.6, 0.9];
+/// How much farther from its class than nearly all of its swatch a place is unlike it, in squares.
+const UNLIKE: f64 = 2.0;
+
+/// A way to tell classes apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Fisher's linear discriminant.
+    Discriminant,
+    /// A network with one hidden layer, fitted by Levenberg and Marquardt's method.
+    Network,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Discriminant => "linear discriminant",
+            Self::Network => "network",
+        })
+    }
+}
+
+/// How a method did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    pub method: Method,
+    /// Mean share of each class's places that it found, of those it was chosen by.
+    pub choosing: f64,
+    /// Of places that had no say before.
+    pub held_out: Confusion,
+}
+
+/// What came of the swatches of a side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Materials {
+    /// The classes; the first is bare paper.
+    pub media: Vec<Option<MediumId>>,
+    /// Whether a swatch shows bare paper; else it is where the sheet is light.
+    pub paper_shown: bool,
+    /// How many places of each class were learnt from.
+    pub learnt: Vec<usize>,
+    /// All methods.
+    pub trials: Vec<Trial>,
+    pub chosen: Method,
+    /// The share of the side that each class has.
+    pub coverage: Vec<f64>,
+    /// The share of the side that is like no swatch.
+    pub unlike: f64,
+}
+
+impl Materials {
+    /// How often the chosen method took one class for another, on held-out places.
+    pub fn confusion(&self) -> Option<&Confusion> {
+        let chosen = self.trials.iter().find(|trial| trial.method == self.chosen);
+        chosen.map(|trial| &trial.held_out)
+    }
+}
+
+/// A swatch, in pixels of what is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// `None` for bare paper.
+    pub medium: Option<MediumId>,
+    pub rect: Crop,
+}
+
+/// The class of every place, and what came of the swatches. `None` where they name no medium.
+pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materials)> {
+    let mut media = vec![None];
+    for swatch in swatches {
+        if !media.contains(&swatch.medium) {
+            media.push(swatch.medium);
+        }
+    }
+    if media.len() < 2 {
+        return None;
+    }
+    let paper_shown = swatches.iter().any(|swatch| swatch.medium.is_none());
+    let mut places = Places::new(media.len());
+    for swatch in swatches {
+        let class = media.iter().position(|medium| *medium == swatch.medium)?;
+        places.add_swatch(seen, swatch.rect, class);
+    }
+    if !paper_shown {
+        places.add_paper(seen);
+    }
+    let learning = places.thinned(Part::Learning, LEARNT);
+    let choosing = places.thinned(Part::Choosing, JUDGED);
+    let held_out = places.thinned(Part::HeldOut, JUDGED);
+    let counts = |class| learning.iter().filter(|(_, of)| *of == class).count();
+    let learnt: Vec<usize> = (0..media.len()).map(counts).collect();
+    let discriminant = Discriminant::fit(&learning, media.len())?;
+    let networks: Vec<Network> = (0..STARTS)
+        .into_par_iter()
+        .map(|seed| Network::fit(&learning, media.len(), seed))
+        .collect();
+    let judge = |class: &dyn Fn(&Features) -> usize, by: &[(Features, usize)]| {
+        Confusion::of(by.iter().map(|(f, is)| (*is, class(f))), media.len())
+    };
+    let accuracy = |network: &Network| judge(&|f| network.class(f), &choosing).accuracy();
+    let network =
+        networks
+            .into_iter()
+            .reduce(|best, next| match accuracy(&next) > accuracy(&best) {
+                true => next,
+                false => best,
+            })?;
+    let trial = |method, class: &dyn Fn(&Features) -> usize| Trial {
+        method,
+        choosing: judge(class, &choosing).accuracy(),
+        held_out: judge(class, &held_out),
+    };
+    let trials = vec![
+        trial(Method::Discriminant, &|f| discriminant.class(f)),
+        trial(Method::Network, &|f| network.class(f)),
+    ];
+    // Of equals the simpler.
+    let chosen = match trials[1].choosing > trials[0].choosing {
+        true => Method::Network,
+        false => Method::Discriminant,
+    };
+    let limits = limits(&discriminant, &learning, media.len());
+    let class_of = |features: &Features| match chosen {
+        Method::Discriminant => discriminant.class(features),
+        Method::Network => network.class(features),
+    };
+    let width = seen.width.max(1);
+    let mut classes = vec![0u8; seen.albedo.len()];
+    let counts: Vec<Vec<u64>> = classes
+        .par_chunks_mut(width)
+        .enumerate()
+        .map(|(y, row)| {
+            // The last is of places like no swatch.
+            let mut counts = vec![0u64; media.len() + 1];
+            for (x, out) in row.iter_mut().enumerate() {
+                let features = seen.at(x, y);
+                let class = class_of(&features);
+                counts[class] += 1;
+                if discriminant.distance(&features, class) > limits[class] {
+                    counts[media.len()] += 1;
+                }
+                *out = class as u8;
+            }
+            counts
+        })
+        .collect();
+    let share = |i: usize| {
+        let count: u64 = counts.iter().map(|row| row[i]).sum();
+        count as f64 / classes.len().max(1) as f64
+    };
+    let materials = Materials {
+        coverage: (0..media.len()).map(share).collect(),
+        unlike: share(media.len()),
+        media,
+        paper_shown,
+        learnt,
+        trials,
+        chosen,
+    };
+    Some((classes, materials))
+}
+
+/// How far from each class a place is unlike it.
+fn limits(discriminant: &Discriminant, places: &[(Features, usize)], classes: usize) -> Vec<f64> {
+    /// Of a swatch's own places, which noise and specks are in.
+    const NEARLY_ALL: f64 = 0.99;
+    (0..classes)
+        .map(|class| {
+            let own = places.iter().filter(|(_, of)| *of == class);
+            let mut far: Vec<f64> = own.map(|(f, _)| discriminant.distance(f, class)).collect();
+            far.sort_by(f64::total_cmp);
+            let last = far.len().saturating_sub(1) as f64;
+            far.get((last * NEARLY_ALL) as usize)
+                .map_or(f64::INFINITY, |far| UNLIKE * far)
+        })
+        .collect()
+}
+
+/// Places whose class is known, by class and what they are for.
+struct Places {
+    by_class: Vec<[Vec<Features>; 3]>,
+}
+
+impl Places {
+    fn new(classes: usize) -> Self {
+        Self {
+            by_class: vec![<[Vec<Features>; 3]>::default(); classes],
+        }
+    }
+
+    fn add_swatch(&mut self, seen: &Seen<'_>, rect: Crop, class: usize) {
+        // A large swatch need not be read whole.
+        let step = every(rect.width() * rect.height());
+        let blocks = Blocks::new(rect);
+        for y in (rect.top as usize..rect.bottom as usize).step_by(step) {
+            for x in (rect.left as usize..rect.right as usize).step_by(step) {
+                if let Some(part) = blocks.part(x, y) {
+                    self.by_class[class][part as usize].push(seen.at(x, y));
+                }
+            }
+        }
+    }
+
+    /// Takes light places for bare paper.
+    fn add_paper(&mut self, seen: &Seen<'_>) {
+        let whole = Crop {
+            left: 0,
+            top: 0,
+            right: seen.width as u32,
+            bottom: seen.height() as u32,
+        };
+        let step = every(seen.albedo.len());
+        let blocks = Blocks::new(whole);
+        let mut found: Vec<(f32, Part, usize, usize)> = Vec::new();
+        for y in (0..seen.height()).step_by(step) {
+            for x in (0..seen.width).step_by(step) {
+                let Some(part) = blocks.part(x, y) else {
+                    continue;
+                };
+                let [r, g, b] = seen.albedo[y * seen.width + x].map(f32::from);
+                found.push((r + 2.0 * g + b, part, x, y));
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let at = |share: f64| (share * found.len() as f64) as usize;
+        for (_, part, x, y) in &found[at(PAPER[0])..at(PAPER[1])] {
+            self.by_class[0][*part as usize].push(seen.at(*x, *y));
+        }
+    }
+
+    /// At most so many of each class, from all over.
+    fn thinned(&self, part: Part, most: usize) -> Vec<(Features, usize)> {
+        let mut thinned = Vec::new();
+        for (class, parts) in self.by_class.iter().enumerate() {
+            let all = &parts[part as usize];
+            let count = all.len().min(most);
+            thinned.extend((0..count).map(|i| (all[i * all.len() / count], class)));
+        }
+        thinned
+    }
+}
+
+/// Every how manieth row and column of so many pixels is read.
+fn every(pixels: usize) -> usize {
+    const MOST: usize = 40_000;
+    ((pixels as f64 / MOST as f64).sqrt().ceil() as usize).max(1)
+}

@@ -1,0 +1,297 @@
+//! What places are drawn with, how glossy and how deep it is: held against a sheet that is known.
+
+use std::{path::PathBuf, sync::OnceLock};
+
+use recto::{
+    manifest::Exhibit,
+    maps::{self, ColourEncoding},
+    optics::medium::{Matter, MediumId},
+    prepare::{
+        Report,
+        capture::Capture,
+        materials::{Materials, Method},
+    },
+};
+
+use super::made::{self, HEIGHT, MEDIA, SWATCHES, Stand, WIDTH, lies, medium, swatch, swatches};
+
+/// Places whose class is found, of all and of held-out ones.
+const AGREE: f64 = 0.95;
+/// Of a roughness: what its own surface shows of it.
+const ROUGHNESS: [(&str, f64); 3] = [("iron-gall-ink", 0.05), ("wash", 0.08), ("bare-paper", 0.1)];
+/// Mean error of τ, over its mean.
+const DEPTH: f64 = 0.06;
+
+struct Prepared {
+    stand: Stand,
+    out: PathBuf,
+    report: Report,
+}
+
+/// The sheet with all its swatches and its light table, prepared once.
+pub fn prepared() -> (&'static Stand, &'static PathBuf, &'static Report) {
+    static ALL: OnceLock<Prepared> = OnceLock::new();
+    let all = ALL.get_or_init(|| {
+        let stand = Stand::new();
+        let out = stand.path("out");
+        let table = "[transmitted]\nphotograph = \"through.png\"\nflat_field = \"table.png\"\n";
+        let text = stand.text() + table + &swatches();
+        let report = stand.prepare(&text, &out).expect("prepared");
+        Prepared { stand, out, report }
+    });
+    (&all.stand, &all.out, &all.report)
+}
+
+pub fn pixels(path: &std::path::Path) -> Vec<[f32; 4]> {
+    let mut pixels = Vec::new();
+    maps::for_each_colour_row(path, ColourEncoding::Linear, |_, row| {
+        pixels.extend_from_slice(row);
+    })
+    .expect("a picture");
+    pixels
+}
+
+fn materials(report: &Report) -> &Materials {
+    report.sides[0]
+        .matter
+        .materials
+        .as_ref()
+        .expect("materials")
+}
+
+/// The classes that the exhibit's own maps show.
+fn classes(out: &std::path::Path) -> Vec<usize> {
+    let (exhibit, warnings) = Exhibit::read(out).expect("an exhibit");
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let mut classes = vec![0; WIDTH * HEIGHT];
+    for map in &exhibit.drawings[0].recto.media {
+        let recto::manifest::exhibit::MediaContent::Legend(legend) = &map.content else {
+            panic!("a legend")
+        };
+        for (i, pixel) in pixels(&map.file.path).iter().enumerate() {
+            let colour = [0, 1, 2].map(|c| (pixel[c] * 255.0).round() as u8);
+            let named = legend
+                .iter()
+                .find(|(named, _)| *named == colour && pixel[3] > 0.5);
+            if let Some((_, medium)) = named {
+                let name = exhibit.media[*medium].name.clone();
+                classes[i] = MEDIA.iter().position(|of| *of == name).expect("a class");
+            }
+        }
+    }
+    classes
+}
+
+#[test]
+fn media_are_told_apart() {
+    let (_, out, report) = prepared();
+    let materials = materials(report);
+    for trial in &materials.trials {
+        eprintln!(
+            "{}: {:.4} where chosen, {:.4} held out",
+            trial.method,
+            trial.choosing,
+            trial.held_out.accuracy()
+        );
+    }
+    // Both were tried, and the better is taken.
+    assert_eq!(materials.trials.len(), 2);
+    let best = materials
+        .trials
+        .iter()
+        .map(|t| t.choosing)
+        .fold(0.0, f64::max);
+    let taken = materials
+        .trials
+        .iter()
+        .find(|t| t.method == materials.chosen);
+    assert_eq!(taken.expect("a trial").choosing, best);
+    let confusion = materials.confusion().expect("a matrix");
+    assert!(confusion.total() > 300);
+    for (class, name) in MEDIA.iter().enumerate() {
+        let recall = confusion.recall(class).expect("held-out places");
+        assert!(recall >= AGREE, "{name}: {recall}");
+    }
+    let found = classes(out);
+    let mut agree = 0;
+    let mut by_class = [[0usize; 4]; 4];
+    for (i, found) in found.iter().enumerate() {
+        let is = lies(i % WIDTH, i / WIDTH).class();
+        by_class[is][*found] += 1;
+        agree += usize::from(is == *found);
+    }
+    let share = agree as f64 / found.len() as f64;
+    eprintln!("{share:.4} of all places: {by_class:?}");
+    assert!(share >= AGREE, "{share}");
+    let sum: f64 = materials.coverage.iter().sum();
+    assert!((sum - 1.0).abs() < 1e-9 && materials.paper_shown);
+}
+
+#[test]
+fn roughness_is_the_surface_s_own() {
+    let (_, out, report) = prepared();
+    for of in &report.sides[0].matter.roughness {
+        eprintln!("{of:?}");
+    }
+    let (exhibit, _) = Exhibit::read(out).expect("an exhibit");
+    for (name, bound) in ROUGHNESS {
+        let id = name.parse::<MediumId>().ok();
+        let of = &report.sides[0].matter.roughness;
+        let found = of.iter().find(|of| of.medium == id).expect("a roughness");
+        let truth = id.unwrap_or_else(|| medium("laid")).medium().roughness();
+        assert!(found.within.is_some(), "{name} is assumed");
+        assert!(
+            (found.alpha - truth).abs() < bound,
+            "{name}: {}",
+            found.alpha
+        );
+        // As it is written, so it is shown.
+        let shown = match id {
+            None => exhibit.drawings[0].paper.roughness,
+            Some(_) => {
+                let medium = exhibit.media.iter().find(|medium| medium.name == name);
+                medium.expect("a medium").matter.roughness()
+            }
+        };
+        assert!((shown - found.alpha).abs() < 1e-3, "{name}: {shown}");
+    }
+}
+
+#[test]
+fn ink_is_as_deep_as_it_lies() {
+    let (stand, out, report) = prepared();
+    let matter = &report.sides[0].matter;
+    let map = pixels(&out.join("maps/recto/ink-depth.png"));
+    let found = classes(out);
+    for (class, name) in [(1, "iron-gall-ink"), (2, "wash")] {
+        let (mut off, mut bias, mut sum, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for (i, pixel) in map.iter().enumerate() {
+            let lies = lies(i % WIDTH, i / WIDTH);
+            if lies.class() == class && found[i] == class {
+                let truth = stand.media.depth(lies).y;
+                let found = f64::from(pixel[0]) * matter.depth_white;
+                off += (found - truth).abs();
+                bias += found - truth;
+                sum += truth;
+                count += 1.0;
+            }
+        }
+        eprintln!(
+            "{name}: τ {:.3}, off by {:.4}, on the whole by {:.4}",
+            sum / count,
+            off / count,
+            bias / count
+        );
+        assert!(off / sum < DEPTH, "{name}: {}", off / sum);
+        let ink = matter.inks.iter().find(|ink| ink.medium == medium(name));
+        let ink = ink.expect("an ink");
+        let Matter::Film(film) = medium(name).medium().matter else {
+            panic!("a film")
+        };
+        // The strongest places have 1.05 of the catalogue's.
+        assert!(
+            (ink.strong[1] / film.depth[1] - 1.05).abs() < 0.15,
+            "{ink:?}"
+        );
+    }
+}
+
+#[test]
+fn the_report_says_how_well() {
+    let (_, out, _) = prepared();
+    let page = std::fs::read_to_string(out.join("report.html")).expect("a page");
+    for word in [
+        "linear discriminant",
+        "Levenberg-Marquardt",
+        "taken for red-chalk",
+        "held-out",
+    ] {
+        assert!(page.contains(word), "{word}");
+    }
+}
+
+/// Prepared anew with other swatches.
+fn with(name: &str, swatches: &str) -> (PathBuf, Report) {
+    let (stand, ..) = prepared();
+    let out = stand.path(name);
+    let report = stand
+        .prepare(&(stand.text() + swatches), &out)
+        .expect("prepared");
+    (out, report)
+}
+
+#[test]
+fn without_swatches_there_is_no_map_and_it_is_said() {
+    let (out, report) = with("none", "");
+    assert!(report.sides[0].matter.materials.is_none());
+    assert!(!out.join("maps/recto/media.png").exists());
+    let page = std::fs::read_to_string(out.join("report.html")).expect("a page");
+    assert!(page.contains("no map of media"));
+    assert!(classes(&out).iter().all(|class| *class == 0));
+    // Bare paper alone is no medium either.
+    let (out, report) = with("one", &swatch(MEDIA[0], SWATCHES[0]));
+    assert!(report.sides[0].matter.materials.is_none());
+    assert!(!out.join("maps/recto/media.png").exists());
+}
+
+#[test]
+fn one_medium_stands_against_the_lights() {
+    let (out, report) = with("ink", &swatch(MEDIA[1], SWATCHES[1]));
+    let materials = materials(&report);
+    assert!(!materials.paper_shown);
+    assert_eq!(materials.media.len(), 2);
+    let found = classes(&out);
+    let ink = |i: &usize| lies(i % WIDTH, i / WIDTH).class() == 1;
+    let all = (0..found.len()).filter(ink).count();
+    let right = (0..found.len())
+        .filter(ink)
+        .filter(|i| found[*i] == 1)
+        .count();
+    assert!(right as f64 > AGREE * all as f64, "{right} of {all}");
+    // What no swatch shows is counted.
+    assert!(materials.unlike > 0.05, "{}", materials.unlike);
+}
+
+#[test]
+fn media_that_look_the_same_are_taken_for_each_other() {
+    // Both swatches lie in the same ink, whose two halves bear two names.
+    let [left, top, right, bottom] = SWATCHES[1];
+    let middle = (left + right) / 2;
+    let swatches = swatch(MEDIA[0], SWATCHES[0])
+        + &swatch("iron-gall-ink", [left, top, middle, bottom])
+        + &swatch("carbon-ink", [middle, top, right, bottom]);
+    let (_, report) = with("alike", &swatches);
+    let materials = materials(&report);
+    let confusion = materials.confusion().expect("a matrix");
+    eprintln!("{confusion:?}");
+    let [a, b] = [1, 2].map(|class| confusion.recall(class).expect("held-out places"));
+    assert!(0.5 * (a + b) < 0.85, "{a} {b}");
+    assert!(confusion.recall(0).expect("paper") > AGREE);
+}
+
+#[test]
+fn a_swatch_outside_is_a_fault() {
+    let (stand, ..) = prepared();
+    let outside = |text: String| {
+        let faults = Capture::parse(&stand.path("capture.toml"), &text).expect_err("a fault");
+        faults.to_string()
+    };
+    let told = outside(stand.text() + &swatch("wash", [200, 100, 260, 120]));
+    assert!(
+        told.contains("swatch[0].rect_px") && told.contains("240 × 176"),
+        "{told}"
+    );
+    // Within the photograph, but not of the sheet.
+    let cropped = stand.text() + "crop_px = [0, 40, 240, 176]\n";
+    let told = outside(cropped + &swatch("wash", SWATCHES[2]));
+    assert!(
+        told.contains("swatch[0].rect_px") && told.contains("crop_px"),
+        "{told}"
+    );
+}
+
+#[test]
+fn methods_have_names() {
+    assert_eq!(Method::Network.to_string(), "network");
+    assert_ne!(made::MEDIA[1], made::MEDIA[2]);
+}
