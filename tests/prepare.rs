@@ -2,6 +2,8 @@
 
 mod support;
 
+#[path = "prepare/ball.rs"]
+mod ball;
 #[path = "prepare/capture.rs"]
 mod capture;
 #[path = "prepare/chain.rs"]
@@ -10,6 +12,8 @@ mod chain;
 mod colour;
 #[path = "prepare/lights.rs"]
 mod lights;
+#[path = "prepare/moved.rs"]
+mod moved;
 #[path = "prepare/photographs.rs"]
 mod photographs;
 

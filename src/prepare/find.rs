@@ -1,6 +1,8 @@
 //! Before the bands run through: where the lamps are, how bright, what they give to each place,
 //! and how colours are corrected.
 
+mod ball;
+
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
@@ -8,7 +10,7 @@ use rayon::prelude::*;
 
 use super::{
     PrepareError,
-    capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots, Sphere},
+    capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots},
     colour::{
         chart,
         correct::{self, Fitted},
@@ -45,7 +47,10 @@ pub fn lamps(capture: &Capture, scratch: &Path) -> Result<FoundLamps, PrepareErr
                 true => &capture.recto.photographs,
                 false => &ball.photographs,
             };
-            let circle = circle(ball, photographs)?;
+            let circle = match ball.circle {
+                Some(circle) => circle,
+                None => self::ball::outline(photographs, capture.encoding, scratch)?,
+            };
             let found: Result<Vec<DVec3>, PrepareError> = photographs
                 .iter()
                 .map(|path| in_ball(path, capture, circle, scratch))
@@ -67,11 +72,6 @@ pub fn lamps(capture: &Capture, scratch: &Path) -> Result<FoundLamps, PrepareErr
         circle,
         spread,
     })
-}
-
-fn circle(ball: &Sphere, photographs: &[PathBuf]) -> Result<Circle, PrepareError> {
-    let first = photographs.first().cloned().unwrap_or_default();
-    ball.circle.ok_or(PrepareError::NoBall { path: first })
 }
 
 /// The lamp that a ball shows in one photograph.

@@ -51,7 +51,7 @@ pub(super) fn preview(
 }
 
 /// Text as HTML shows it.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
@@ -119,10 +119,21 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
         }
         out += "</p>";
     }
+    if let Some(verso) = &report.verso {
+        let _ = write!(
+            out,
+            "<h2>Place of the verso</h2><p>{}.</p>",
+            escaped(&verso.told())
+        );
+    }
     for side in &report.sides {
         let name = match side.side {
             SideName::Recto => "Recto",
             SideName::Verso => "Verso",
+        };
+        let shots = match (side.side, &capture.verso) {
+            (SideName::Verso, Some(verso)) => verso,
+            _ => &capture.recto,
         };
         let [width, height] = side.size;
         let _ = write!(
@@ -130,16 +141,20 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
             "<h2>{name}</h2><table><tr><td>Size<td>{width} × {height} pixels\
              <tr><td>What the photographs leave over, median and 95 %<td>{:.1} %, {:.1} %\
              <tr><td>Places at which a photograph was doubted<td>{:.1} %\
-             <tr><td>Shape at large<td>{:.0} … {:.0} µm<tr><td>Grain and strokes<td>{:.1} … {:.1} \
+             {}<tr><td>Shape at large<td>{:.0} … {:.0} µm<tr><td>Grain and strokes<td>{:.1} … {:.1} \
              µm</table>",
             side.residual[0] * 100.0,
             side.residual[1] * 100.0,
             side.doubted * 100.0,
+            side.stillness.row(shots, capture.mm_per_px),
             side.shape_um[0],
             side.shape_um[1],
             side.grain_um[0],
             side.grain_um[1],
         );
+        if let (Some(comparison), Some(other)) = (&side.compared, &capture.compare) {
+            out += &comparison.table(&escaped(&other.path.to_string_lossy()));
+        }
         for (kind, words) in [
             ("albedo", "Albedo"),
             ("normal", "Normals of grain and strokes"),

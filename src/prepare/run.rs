@@ -13,21 +13,25 @@ use super::{
     },
     find::{self, FoundLamps},
     flat_field::FlatFieldError,
-    lights::{self, Ill, sphere::NoHighlight},
+    lights::{self, Ill, ball::NoBall, sphere::NoHighlight},
+    moved::{self, Moved, Stillness},
     photographs::{Stack, StackError},
     relief::{
-        compare::{range, remove_plane},
+        compare::{Comparison, range, remove_plane},
         filter::{Split, split},
         integrate::{Perimeter, Slopes, integrate},
+        surface,
     },
     report,
+    stage::Stage,
     stereo::{Gain, Response, Rig, Rows, Solver, Standing},
+    verso,
     write::{self, SideFiles, SideText},
 };
 use crate::{
     colour::srgb_encode,
     manifest::{Exhibit, Faults, SideName},
-    maps::MapError,
+    maps::{MapError, room},
 };
 
 /// Why photographs could not be prepared. Every message names a file.
@@ -44,8 +48,10 @@ pub enum PrepareError {
     Faults(#[from] Faults),
     #[error("{}: {why}; write circle_px as centre and radius of the whole ball, or lamps by azimuth_deg and elevation_deg", path.display())]
     Ball { path: PathBuf, why: NoHighlight },
-    #[error("{}: a glossy ball is not looked for yet; write circle_px as its centre and radius in pixels", path.display())]
-    NoBall { path: PathBuf },
+    #[error("{}: {why}; photograph one whole ball, or write circle_px as its centre and radius in pixels", path.display())]
+    NoBall { path: PathBuf, why: NoBall },
+    #[error("the camera or the sheet moved: {}; photograph them again with nothing touched in between, or bring them to the place of the others and crop all alike", listed(.0))]
+    Moved(Vec<Moved>),
     #[error("{}: {why}; correct [lamps]", file.display())]
     Lamps { file: PathBuf, why: Ill },
     #[error("{}: {why}", path.display())]
@@ -54,8 +60,15 @@ pub enum PrepareError {
     Dark { path: PathBuf },
     #[error("{}: an exhibit is there already; choose another folder or remove the file", .0.display())]
     Exists(PathBuf),
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: another `recto prepare` is at work in this folder; wait for it, or choose another one", .0.display())]
+    Busy(PathBuf),
+    #[error("{}: {reason}{}", path.display(), room(reason))]
     Folder { path: PathBuf, reason: io::Error },
+}
+
+fn listed(moved: &[Moved]) -> String {
+    let each: Vec<String> = moved.iter().map(Moved::to_string).collect();
+    each.join("; ")
 }
 
 /// How far the work is.
@@ -79,6 +92,10 @@ pub struct Report {
     /// How colours were corrected; `None` without a chart.
     pub colour: Option<Fitted>,
     pub sides: Vec<SideReport>,
+    /// How the verso was put in its place; `None` without one.
+    pub verso: Option<verso::Place>,
+    /// How many interrupted runs left something in the folder, which was removed.
+    pub interrupted: usize,
 }
 
 /// A lamp as found.
@@ -106,6 +123,10 @@ pub struct SideReport {
     pub shape_um: [f64; 2],
     /// Of grain and strokes.
     pub grain_um: [f64; 2],
+    /// How far each photograph is shifted against the others.
+    pub stillness: Stillness,
+    /// How the shape differs from the other surface that the capture names, in µm.
+    pub compared: Option<Comparison>,
 }
 
 /// Makes maps of a capture, a manifest that shows them and a report, in the folder `out`, which
@@ -142,14 +163,7 @@ fn staged(
     out: &Path,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Report, PrepareError> {
-    let folder = |path: &Path| {
-        let path = path.to_owned();
-        move |reason| PrepareError::Folder { path, reason }
-    };
-    let stage = tempfile::Builder::new()
-        .prefix(".recto-prepare-")
-        .tempdir_in(out)
-        .map_err(folder(out))?;
+    let stage = Stage::new(out)?;
     let scratch = stage.path();
     let mut tell = |step, done| progress(Progress { step, done });
     tell("looking for the lamps", 0.0);
@@ -185,12 +199,17 @@ fn staged(
         spread: lamps.spread,
         colour,
         sides: reports,
+        verso: match capture.verso {
+            Some(_) => Some(verso::place(scratch, capture.mm_per_px)?),
+            None => None,
+        },
+        interrupted: stage.interrupted,
     };
     write::manifest(capture, &sides, &report, scratch)?;
     report::html(capture, &report, scratch)?;
     // What is written is what `recto check` passes.
     Exhibit::read(scratch)?;
-    write::publish(scratch, out)?;
+    stage.publish()?;
     progress(Progress {
         step: "done",
         done: 1.0,
@@ -230,7 +249,10 @@ fn prepare_side(
     scratch: &Path,
     tell: &mut dyn FnMut(&'static str, f64),
 ) -> Result<(SideText, SideReport), PrepareError> {
-    tell("reading grey cards", 0.0);
+    tell("comparing the photographs", 0.0);
+    let (reference, mm_per_px) = (rig.highest(), capture.mm_per_px);
+    let stillness = moved::check(shots, reference, mm_per_px, capture.encoding, scratch)?;
+    tell("reading grey cards", 0.05);
     let fields = find::flat_fields(capture, shots, scratch)?;
     let solver = Solver {
         rig: rig.clone(),
@@ -301,6 +323,13 @@ fn prepare_side(
         }
     }
     let shape_um = extent(&shape);
+    let compared = match (&capture.compare, side) {
+        (Some(other), SideName::Recto) => {
+            let mm = capture.mm_per_px * large.step as f64;
+            surface::compared(&shape, large.width, mm, other)?
+        }
+        _ => None,
+    };
     let surface = maps.shape(&shape, large.width)?;
     drop((shape, large));
     maps.normal(&small)?;
@@ -323,6 +352,8 @@ fn prepare_side(
         assumed_exposure,
         shape_um,
         grain_um,
+        stillness,
+        compared,
     };
     Ok((text, report))
 }

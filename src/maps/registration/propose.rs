@@ -52,6 +52,19 @@ impl Proposed {
     }
 }
 
+/// `control_points` as a manifest has them, of places in a picture in pixels and on the side in mm.
+pub fn control_points(places: impl Iterator<Item = (DVec2, DVec2)>) -> String {
+    let lines: Vec<String> = places
+        .map(|(px, mm)| {
+            format!(
+                "    {{ picture = [{:.1}, {:.1}], sheet_mm = [{:.2}, {:.2}] }},",
+                px.x, px.y, mm.x, mm.y
+            )
+        })
+        .collect();
+    format!("control_points = [\n{}\n]", lines.join("\n"))
+}
+
 /// What two pictures have to do with each other.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Proposal {
@@ -239,7 +252,7 @@ fn propose(first: &Grey, second: &Grey, reach_mm: f64, kind: Kind) -> Proposal {
 
 /// The largest set of points that agree on a similarity, and that similarity: every two points
 /// are tried (M. A. Fischler, R. C. Bolles, *Commun. ACM* 24 (1981) 381, without its chance).
-fn agreement(
+pub(super) fn agreement(
     points: &[Proposed],
     px_per_mm: f64,
     tolerance_mm: f64,

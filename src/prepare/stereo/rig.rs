@@ -58,6 +58,14 @@ impl Rig {
         }
     }
 
+    /// The number of the lamp that stands highest above the sheet, as seen from the middle.
+    pub fn highest(&self) -> usize {
+        let (Standing::Far(lamps) | Standing::Near(lamps)) = &self.standing;
+        let heights = lamps.iter().map(|lamp| lamp.normalize().z);
+        let highest = heights.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        highest.map_or(0, |(i, _)| i)
+    }
+
     /// Whether every place sees the lamps alike.
     pub fn is_uniform(&self) -> bool {
         matches!(self.standing, Standing::Far(_))
