@@ -8,19 +8,28 @@ mod ball;
 mod capture;
 #[path = "prepare/chain.rs"]
 mod chain;
+#[path = "prepare/chart.rs"]
+mod chart;
 #[path = "prepare/colour.rs"]
 mod colour;
+#[path = "prepare/gltf.rs"]
+mod model;
+#[path = "prepare/interrupted.rs"]
+mod interrupted;
 #[path = "prepare/lights.rs"]
 mod lights;
 #[path = "prepare/moved.rs"]
 mod moved;
 #[path = "prepare/photographs.rs"]
 mod photographs;
-
 #[path = "prepare/relief.rs"]
 mod relief;
+#[path = "prepare/ruler.rs"]
+mod ruler;
 #[path = "prepare/stereo.rs"]
 mod stereo;
+#[path = "prepare/verso.rs"]
+mod verso;
 
 /// A folder that lives as long as the test.
 fn folder() -> tempfile::TempDir {

@@ -2,6 +2,7 @@
 //! and how colours are corrected.
 
 mod ball;
+mod chart;
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ use super::{
     PrepareError,
     capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots},
     colour::{
-        chart,
+        chart::{ChartError, colours, colours_unclipped},
         correct::{self, Fitted},
     },
     flat_field::FlatField,
@@ -248,29 +249,29 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
     let Some(chart) = &capture.chart else {
         return Ok(None);
     };
+    let corners = self::chart::corners(chart, capture.encoding, scratch)?;
     let Chart {
         photograph,
-        corners,
         lab,
         flat_field,
+        ..
     } = chart;
     let refused = |why| PrepareError::Chart {
         path: photograph.clone(),
         why,
     };
-    let corners = corners.ok_or_else(|| refused(chart::ChartError::NotFound))?;
     let size = crate::maps::probe(photograph)?.size;
     let mut planes = planes(photograph, capture, whole(size), scratch)?;
     let [width, height] = size.map(|v| v as usize);
     // Clipping shows before the light is evened out.
     let read = |planes: &[Vec<f32>; 3]| {
-        chart::colours(
+        colours(
             planes.each_ref().map(Vec::as_slice),
             [width, height],
             corners,
         )
     };
-    let mut colours = read(&planes).map_err(refused)?;
+    let mut measured = read(&planes).map_err(refused)?;
     if let Some(card) = flat_field {
         let reflectance = match &capture.lamps.light {
             Light::FlatField { reflectance, .. } => *reflectance,
@@ -283,15 +284,13 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
             let planes = [&mut r[row.clone()], &mut g[row.clone()], &mut b[row]];
             field.divide(y, planes);
         }
-        colours = chart::colours_unclipped(
+        measured = colours_unclipped(
             planes.each_ref().map(Vec::as_slice),
             [width, height],
             corners,
         )
         .map_err(refused)?;
     }
-    let fitted = correct::fit(&colours, lab, capture.illuminant.xy());
-    fitted
-        .map(Some)
-        .ok_or_else(|| refused(chart::ChartError::Flat))
+    let fitted = correct::fit(&measured, lab, capture.illuminant.xy());
+    fitted.map(Some).ok_or_else(|| refused(ChartError::Flat))
 }

@@ -4,7 +4,7 @@ use std::{fmt::Write as _, fs, io::Write as _, path::Path};
 
 use super::{
     PrepareError,
-    capture::{Capture, Light, Places},
+    capture::{Capture, Circle, Light},
     colour::chart::COLORCHECKER24,
     run::Report,
 };
@@ -178,9 +178,12 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
 
 /// Which maps are measured, fitted or assumed.
 fn sources(capture: &Capture, report: &Report) -> String {
-    let lamps = match capture.lamps.places {
-        Places::Sphere(_) => "measured, in a glossy ball",
-        _ => "as stated",
+    let lamps = match report.ball {
+        Some(Circle { centre, radius }) => format!(
+            "measured, in a glossy ball of radius {radius:.1} at {:.1}, {:.1} (pixels)",
+            centre.x, centre.y
+        ),
+        None => "as stated".to_owned(),
     };
     let light = match &capture.lamps.light {
         Light::FlatField { .. } => "measured, by a grey card for each place",

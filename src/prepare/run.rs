@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    capture::{Capture, Light, Robustness, Shots},
+    capture::{Capture, Circle, Light, Robustness, Shots},
     colour::{
         chart::ChartError,
         correct::{Correction, Fitted},
@@ -87,6 +87,8 @@ pub struct Report {
     pub manifest: PathBuf,
     /// In the order of the photographs.
     pub lamps: Vec<LampFound>,
+    /// The ball that they were found in.
+    pub ball: Option<Circle>,
     /// How well the lamps span space, in 0…1.
     pub spread: f64,
     /// How colours were corrected; `None` without a chart.
@@ -196,6 +198,7 @@ fn staged(
     let report = Report {
         manifest: out.join(crate::manifest::MANIFEST),
         lamps: lamps_found(&lamps, found_rig.as_ref()),
+        ball: lamps.circle,
         spread: lamps.spread,
         colour,
         sides: reports,

@@ -111,7 +111,8 @@ pub fn motion(first: &Detail, second: &Detail) -> Option<Motion> {
         return None;
     }
     let whole = shift_of_all(&first.small, &second.small);
-    let starts = [whole.map(|by| by.map(|v| v * SMALL as i64)), Some([0, 0])];
+    let whole = whole.map(|by| by.map(|v| v * SMALL as i64));
+    let starts = [whole.filter(|by| *by != [0, 0]), Some([0, 0])];
     let motions = starts
         .into_iter()
         .flatten()

@@ -251,7 +251,9 @@ impl Validator<'_, '_> {
     fn compare(&mut self, raw: &RawRelief, trail: &Trail) -> Option<OtherSurface> {
         let path = self.path(raw.compare.as_ref()?);
         let key = trail.key("compare");
-        let is_model = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+        let is_model = path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("glb"));
         let range_um = raw.compare_range_um.map(|range| range.map(|um| um.0));
         if !is_model {
             self.same_size(&[(&path, key)], None)?;
