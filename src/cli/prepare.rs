@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.out.display()
         ));
     }
-    for side in &report.sides {
+    for (side, stillness) in report.sides.iter().zip(&report.stillness) {
         output::say(format_args!(
             "{} × {} pixels; photographs leave {:.1} % over, {:.1} % of places were doubted",
             side.size[0],
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             side.residual[0] * 100.0,
             side.doubted * 100.0
         ));
-        if let Some((_, by)) = side.stillness.farthest() {
+        if let Some((_, by)) = stillness.farthest() {
             output::say(format_args!(
                 "the farthest shift of a photograph against the others is {:.2} pixels",
                 by.length()

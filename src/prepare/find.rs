@@ -59,12 +59,7 @@ pub fn lamps(capture: &Capture, scratch: &Path) -> Result<FoundLamps, PrepareErr
             (Standing::Far(found?), Some(circle))
         }
     };
-    let directions: Vec<DVec3> = match &standing {
-        Standing::Far(lamps) | Standing::Near(lamps) => {
-            lamps.iter().map(|lamp| lamp.normalize()).collect()
-        }
-    };
-    let spread = lights::spread(&directions).map_err(|why| PrepareError::Lamps {
+    let spread = lights::spread(&standing.directions()).map_err(|why| PrepareError::Lamps {
         file: capture.file.clone(),
         why,
     })?;
@@ -186,11 +181,7 @@ pub fn rig(
         Light::Relative(values) => Gain::Relative(values.clone()),
         Light::Unknown(Intensities::Equal) => Gain::Relative(vec![1.0; count]),
         Light::Unknown(Intensities::Solve) => {
-            let directions: Vec<DVec3> = match &lamps.standing {
-                Standing::Far(lamps) | Standing::Near(lamps) => {
-                    lamps.iter().map(|lamp| lamp.normalize()).collect()
-                }
-            };
+            let directions = lamps.standing.directions();
             let samples = samples(capture, shots, &rig, scratch)?;
             let found = intensity::solve(&directions, &samples);
             Gain::Relative(found.ok_or_else(|| PrepareError::Dark {

@@ -126,7 +126,7 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
             escaped(&verso.told())
         );
     }
-    for side in &report.sides {
+    for (side, stillness) in report.sides.iter().zip(&report.stillness) {
         let name = match side.side {
             SideName::Recto => "Recto",
             SideName::Verso => "Verso",
@@ -146,7 +146,7 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
             side.residual[0] * 100.0,
             side.residual[1] * 100.0,
             side.doubted * 100.0,
-            side.stillness.row(shots, capture.mm_per_px),
+            stillness.row(shots, capture.mm_per_px),
             side.shape_um[0],
             side.shape_um[1],
             side.grain_um[0],

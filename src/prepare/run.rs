@@ -94,6 +94,8 @@ pub struct Report {
     /// How colours were corrected; `None` without a chart.
     pub colour: Option<Fitted>,
     pub sides: Vec<SideReport>,
+    /// Of each side, how far each photograph is shifted against the others.
+    pub stillness: Vec<Stillness>,
     /// How the verso was put in its place; `None` without one.
     pub verso: Option<verso::Place>,
     /// How many interrupted runs left something in the folder, which was removed.
@@ -125,8 +127,6 @@ pub struct SideReport {
     pub shape_um: [f64; 2],
     /// Of grain and strokes.
     pub grain_um: [f64; 2],
-    /// How far each photograph is shifted against the others.
-    pub stillness: Stillness,
     /// How the shape differs from the other surface that the capture names, in µm.
     pub compared: Option<Comparison>,
 }
@@ -181,12 +181,15 @@ fn staged(
         .into_iter()
         .filter_map(|(side, shots)| Some((side, shots?)))
         .collect();
+    tell("comparing the photographs", 0.04);
+    let both_shots: Vec<&Shots> = shots.iter().map(|(_, shots)| *shots).collect();
+    let stillness = moved::check_all(&both_shots, &lamps.standing.directions(), capture, scratch)?;
     let mut reports = Vec::new();
     let mut sides = Vec::new();
     let mut found_rig = None;
     for (i, (side, shots)) in shots.iter().enumerate() {
-        let from = 0.05 + 0.9 * i as f64 / shots_count(&both);
-        let share = 0.9 / shots_count(&both);
+        let from = 0.1 + 0.85 * i as f64 / shots_count(&both);
+        let share = 0.85 / shots_count(&both);
         let mut tell = |step, done: f64| tell(step, from + share * done);
         let rig = find::rig(capture, shots, &lamps, scratch)?;
         let (text, side) =
@@ -195,6 +198,10 @@ fn staged(
         sides.push(text);
         reports.push(side);
     }
+    tell("placing the verso", 0.95);
+    let verso = capture.verso.as_ref();
+    let placed = verso.map(|_| verso::place(scratch, capture.mm_per_px));
+    let placed = placed.transpose()?;
     let report = Report {
         manifest: out.join(crate::manifest::MANIFEST),
         lamps: lamps_found(&lamps, found_rig.as_ref()),
@@ -202,10 +209,8 @@ fn staged(
         spread: lamps.spread,
         colour,
         sides: reports,
-        verso: match capture.verso {
-            Some(_) => Some(verso::place(scratch, capture.mm_per_px)?),
-            None => None,
-        },
+        stillness,
+        verso: placed,
         interrupted: stage.interrupted,
     };
     write::manifest(capture, &sides, &report, scratch)?;
@@ -252,10 +257,7 @@ fn prepare_side(
     scratch: &Path,
     tell: &mut dyn FnMut(&'static str, f64),
 ) -> Result<(SideText, SideReport), PrepareError> {
-    tell("comparing the photographs", 0.0);
-    let (reference, mm_per_px) = (rig.highest(), capture.mm_per_px);
-    let stillness = moved::check(shots, reference, mm_per_px, capture.encoding, scratch)?;
-    tell("reading grey cards", 0.05);
+    tell("reading grey cards", 0.0);
     let fields = find::flat_fields(capture, shots, scratch)?;
     let solver = Solver {
         rig: rig.clone(),
@@ -355,7 +357,6 @@ fn prepare_side(
         assumed_exposure,
         shape_um,
         grain_um,
-        stillness,
         compared,
     };
     Ok((text, report))

@@ -85,9 +85,10 @@ impl Scene {
         }
     }
 
-    fn at(&self, at: DVec2) -> DVec3 {
-        for onto in &self.charts {
-            let place = project(&onto.inverse(), at);
+    /// `from` are the inverses of `charts`.
+    fn at(&self, from: &[DMat3], at: DVec2) -> DVec3 {
+        for from in from {
+            let place = project(from, at);
             let (w, h) = (COLUMNS as f64 - 1.0, ROWS as f64 - 1.0);
             let margin = 0.8;
             let inside = place.x > -margin
@@ -124,18 +125,19 @@ impl Scene {
 
     /// As a camera with colours of its own has it, under a lamp from one side.
     fn picture(&self, path: &Path) {
-        const SUB: usize = 3;
+        const SUB: usize = 2;
         let camera =
             DMat3::from_cols_array(&[0.62, 0.14, 0.03, 0.30, 0.72, 0.22, 0.05, 0.10, 0.60]);
         let mut random = Xoshiro256PlusPlus::seed_from_u64(21);
         let [w, h] = self.size;
+        let from: Vec<DMat3> = self.charts.iter().map(DMat3::inverse).collect();
         let pixels: Vec<[u16; 3]> = (0..w * h)
             .map(|i| {
                 let corner = DVec2::new((i % w) as f64, (i / w) as f64);
                 let sum: DVec3 = (0..SUB * SUB)
                     .map(|s| {
                         let by = DVec2::new((s % SUB) as f64, (s / SUB) as f64) + 0.5;
-                        self.at(corner + by / SUB as f64)
+                        self.at(&from, corner + by / SUB as f64)
                     })
                     .sum();
                 let light = 0.75 * (1.0 + 0.25 * (corner.x / w as f64 - 0.5));

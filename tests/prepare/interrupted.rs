@@ -24,14 +24,22 @@ const SIDE: usize = 120;
 const CHILD_CAPTURE: &str = "RECTO_TEST_CAPTURE";
 const CHILD_OUT: &str = "RECTO_TEST_OUT";
 
+/// A number that looks as if it were drawn by chance.
+fn mixed(seed: usize) -> usize {
+    let mixed = (seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    mixed >> 40
+}
+
 /// Writes photographs of a sheet of `side` pixels, and a capture of them.
-fn capture(folder: &Path, side: usize) -> PathBuf {
+pub(super) fn capture(folder: &Path, side: usize) -> PathBuf {
     for i in 0..4 {
         let pixels: Vec<u16> = (0..side * side)
             .map(|p| {
-                let (x, y) = (p % side, p / side);
-                let stroke = (x / 7 + y / 5) % 9 == 0;
-                let noise = (p * 7919 + i * 104_729) % 613;
+                // Nowhere the same again: a pattern may be taken for itself, shifted.
+                let (u, v) = (p % side / 7, p / side / 5);
+                let stroke = mixed(u * 1000 + v) % 9 == 0;
+                let noise = mixed(p * 4 + i) % 613;
                 (if stroke { 9_000 } else { 38_000 } + 12 * noise) as u16
             })
             .collect();
@@ -46,12 +54,12 @@ fn capture(folder: &Path, side: usize) -> PathBuf {
     path
 }
 
-fn run(capture: &Path, out: &Path) -> Result<Report, PrepareError> {
+pub(super) fn run(capture: &Path, out: &Path) -> Result<Report, PrepareError> {
     let (capture, _) = Capture::read(capture).expect("a capture");
     prepare::run(&capture, out, &mut |_| {})
 }
 
-fn names(folder: &Path) -> Vec<String> {
+pub(super) fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     let mut names: Vec<String> = entries
         .map(|entry| {

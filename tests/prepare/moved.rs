@@ -14,22 +14,26 @@ use recto::{
     },
 };
 
-use super::{folder, support::data};
+use super::{folder, interrupted, support::data};
 use crate::test_name;
 
 const MM_PER_PX: f64 = 0.1;
 
-fn check(folder: &Path, photographs: &[PathBuf]) -> Result<Stillness, PrepareError> {
+fn check(
+    folder: &Path,
+    photographs: &[PathBuf],
+    lamps: &[DVec3],
+) -> Result<Stillness, PrepareError> {
     let list: Vec<String> = photographs.iter().map(|path| format!("{path:?}")).collect();
-    let azimuths: Vec<String> = (0..list.len()).map(|i| format!("{}", i * 7)).collect();
+    let azimuths = (0..list.len()).map(|i| format!("{}", 360 * i / list.len()));
     let text = format!(
         "id = \"still\"\nencoding = \"srgb\"\nscale.mm_per_px = {MM_PER_PX}\n[lamps]\n\
          azimuth_deg = [{}]\nelevation_deg = 45\n[recto]\nphotographs = [{}]\n",
-        azimuths.join(", "),
+        azimuths.collect::<Vec<_>>().join(", "),
         list.join(", ")
     );
     let (capture, _) = Capture::parse(&folder.join("capture.toml"), &text).expect("a capture");
-    moved::check(&capture.recto, 0, MM_PER_PX, capture.encoding, folder)
+    moved::check(&capture.recto, lamps, MM_PER_PX, capture.encoding, folder)
 }
 
 struct Picture {
@@ -89,10 +93,16 @@ fn told(stillness: &Stillness) -> String {
     each.collect::<Vec<_>>().join(" ")
 }
 
-fn cat(root: &Path) -> Vec<PathBuf> {
-    (1..=12)
-        .map(|i| root.join(format!("Objects/Image_{i:02}.png")))
-        .collect()
+/// Photographs of the cat, and towards the lamps.
+fn cat(root: &Path) -> (Vec<PathBuf>, Vec<DVec3>) {
+    let photographs = (1..=12).map(|i| root.join(format!("Objects/Image_{i:02}.png")));
+    let text = std::fs::read_to_string(root.join("light_directions.txt")).expect("numbers");
+    let l: Vec<f64> = text
+        .split_whitespace()
+        .map(|word| word.parse().expect("a number"))
+        .collect();
+    let lamps = (0..12).map(|i| DVec3::new(l[i], l[12 + i], l[24 + i]).normalize());
+    (photographs.collect(), lamps.collect())
 }
 
 #[test]
@@ -101,9 +111,10 @@ fn the_cat_sat_still() {
         return;
     };
     let folder = folder();
-    let stillness = check(folder.path(), &cat(&root)).expect("nothing moved");
+    let (photographs, lamps) = cat(&root);
+    let stillness = check(folder.path(), &photographs, &lamps).expect("nothing moved");
     eprintln!("{}", told(&stillness));
-    assert!(stillness.compared() >= 10, "{}", told(&stillness));
+    assert!(stillness.compared() == 12, "{}", told(&stillness));
 }
 
 #[test]
@@ -117,11 +128,11 @@ fn a_cat_that_moved_is_told_by_name() {
         (0, DVec2::new(0.0, -2.0)),
         (7, DVec2::new(-31.0, 24.0)),
     ] {
-        let mut photographs = cat(&root);
+        let (mut photographs, lamps) = cat(&root);
         let copy = folder.path().join(format!("moved-{number}.png"));
         Picture::read(&photographs[number]).moved(&copy, DAffine2::from_translation(by));
         photographs[number] = copy;
-        match check(folder.path(), &photographs) {
+        match check(folder.path(), &photographs, &lamps) {
             Err(error @ PrepareError::Moved(_)) => {
                 let told = error.to_string();
                 let PrepareError::Moved(moved) = error else {
@@ -146,27 +157,38 @@ fn the_lion_lay_still_under_low_lamps() {
     let lamps = lp::read(&text).expect("lamps");
     let mut low: Vec<&lp::LpLamp> = lamps.iter().collect();
     low.sort_by(|a, b| a.direction.z.total_cmp(&b.direction.z));
-    // The lowest, and every tenth, each made three times as large: the lion is very small.
+    // The lowest, and every tenth.
     let folder = folder();
-    let some = low.iter().take(12).chain(low.iter().step_by(10));
-    let photographs: Vec<PathBuf> = some
-        .enumerate()
-        .map(|(i, lamp)| {
-            let small = Picture::read(&lamp.beside(&root));
-            let [w, h] = small.size.map(|side| side * 3);
-            let pixels: Vec<[u8; 3]> = (0..w * h)
-                .map(|i| {
-                    let at = DVec2::new((i % w) as f64 + 0.5, (i / w) as f64 + 0.5);
-                    small.at(at / 3.0).map(|v| (v * 255.0).round() as u8)
-                })
-                .collect();
-            let path = folder.path().join(format!("lion-{i:02}.png"));
-            encode::save_png_rgb8(&path, w as u32, h as u32, &pixels, None).expect("written");
-            path
-        })
-        .collect();
-    let stillness = check(folder.path(), &photographs).expect("nothing moved");
+    let some = low.iter().take(12).chain(low.iter().step_by(10).skip(2));
+    let (mut photographs, mut lamps) = (Vec::new(), Vec::new());
+    for lamp in some {
+        photographs.push(lamp.beside(&root));
+        lamps.push(lamp.direction);
+    }
+    let stillness = check(folder.path(), &photographs, &lamps).expect("nothing moved");
     eprintln!("{}", told(&stillness));
+    assert!(
+        stillness.compared() * 4 > 3 * lamps.len(),
+        "{}",
+        told(&stillness)
+    );
+    // One of the low ones and one of the high ones, moved.
+    let by = DVec2::new(2.0, 0.0);
+    for number in [3, lamps.len() - 3] {
+        let mut photographs = photographs.clone();
+        let copy = folder.path().join("moved.png");
+        Picture::read(&photographs[number]).moved(&copy, DAffine2::from_translation(by));
+        photographs[number] = copy;
+        let found = check(folder.path(), &photographs, &lamps);
+        let Err(PrepareError::Moved(moved)) = &found else {
+            panic!("{number}: {found:?}");
+        };
+        assert!(
+            moved.len() == 1 && moved[0].path.ends_with("moved.png"),
+            "{moved:?}"
+        );
+        assert!(moved[0].by_px.distance(by) < 0.7, "{moved:?}");
+    }
 }
 
 /// A drawn sheet with relief, as lamps show it from a camera at `by`.
@@ -199,6 +221,10 @@ impl Sheet {
         top * (1.0 - part.y) + bottom * part.y
     }
 
+    fn lamp(i: usize, elevation: f64) -> DVec3 {
+        direction(77.0 * i as f64, elevation)
+    }
+
     fn shown(&self, at: DVec2, l: DVec3, drawn: bool) -> f64 {
         let height = |at: DVec2| 2.5 * self.smooth(at, 6.0) + 8.0 * self.smooth(at, 40.0);
         let dx = height(at + DVec2::X * 0.5) - height(at - DVec2::X * 0.5);
@@ -218,7 +244,7 @@ impl Sheet {
     ) -> Vec<PathBuf> {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(8);
         let each = by.iter().enumerate().map(|(i, by)| {
-            let l = direction(77.0 * i as f64, elevation);
+            let l = Self::lamp(i, elevation);
             let back = by.inverse();
             let pixels: Vec<u8> = (0..WIDTH * HEIGHT)
                 .map(|p| {
@@ -245,7 +271,8 @@ fn light_alone_moves_nothing() {
     for (elevation, drawn) in [(45.0, true), (20.0, true), (45.0, false), (12.0, false)] {
         let folder = folder();
         let photographs = sheet.photographs(folder.path(), elevation, drawn, &[STILL; 6]);
-        let stillness = check(folder.path(), &photographs).expect("nothing moved");
+        let lamps: Vec<DVec3> = (0..6).map(|i| Sheet::lamp(i, elevation)).collect();
+        let stillness = check(folder.path(), &photographs, &lamps).expect("nothing moved");
         eprintln!("{elevation}° {drawn}: {}", told(&stillness));
         if let Some((_, by)) = stillness.farthest() {
             assert!(by.length() < STILL_PX, "{}", told(&stillness));
@@ -272,7 +299,8 @@ fn shifts_turns_and_scales_are_measured() {
     let mut by = [STILL; 6];
     by[3] = DAffine2::from_translation(slight);
     let photographs = sheet.photographs(folder.path(), 45.0, true, &by);
-    let stillness = check(folder.path(), &photographs).expect("still enough");
+    let lamps: Vec<DVec3> = (0..6).map(|i| Sheet::lamp(i, 45.0)).collect();
+    let stillness = check(folder.path(), &photographs, &lamps).expect("still enough");
     eprintln!("slight: {}", told(&stillness));
     let (which, shift) = stillness.farthest().expect("compared");
     assert!(
@@ -288,7 +316,7 @@ fn shifts_turns_and_scales_are_measured() {
         let mut by = [STILL; 6];
         by[2] = motion;
         let photographs = sheet.photographs(folder.path(), 45.0, true, &by);
-        let Err(PrepareError::Moved(moved)) = check(folder.path(), &photographs) else {
+        let Err(PrepareError::Moved(moved)) = check(folder.path(), &photographs, &lamps) else {
             panic!("{name} is not told");
         };
         assert_eq!(moved.len(), 1, "{name}: {moved:?}");
@@ -313,6 +341,27 @@ fn what_shows_nothing_is_not_compared() {
             path
         })
         .collect();
-    let stillness = check(folder.path(), &photographs).expect("nothing moved");
+    let lamps: Vec<DVec3> = (0..3)
+        .map(|i| direction(120.0 * f64::from(i), 45.0))
+        .collect();
+    let stillness = check(folder.path(), &photographs, &lamps).expect("nothing moved");
     assert_eq!((stillness.compared(), stillness.farthest()), (0, None));
+}
+
+#[test]
+fn what_moved_is_not_prepared() {
+    let folder = folder();
+    let capture = interrupted::capture(folder.path(), 160);
+    let out = folder.path().join("out");
+    let moved = folder.path().join("r2.png");
+    Picture::read(&moved).moved(&moved, DAffine2::from_translation(DVec2::new(2.0, 1.0)));
+    let told = interrupted::run(&capture, &out)
+        .expect_err("it moved")
+        .to_string();
+    assert!(
+        told.contains("r2.png") && told.contains("2.2 pixels") && told.contains("0.22 mm"),
+        "{told}"
+    );
+    assert!(told.contains("photograph them again"), "{told}");
+    assert!(!told.contains("r1.png") && !out.exists());
 }

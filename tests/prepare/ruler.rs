@@ -80,10 +80,10 @@ fn lamps_in_one_plane_are_refused() {
     assert!(told.contains("one plane"), "{told}");
     // Of one elevation all around is no plane with the middle.
     assert!(parsed(scale, AROUND).is_ok());
-    // But nearly flat it is.
+    // But in one place all of them it is.
     let told = fault(
         scale,
-        "azimuth_deg = [0, 90, 180, 270]\nelevation_deg = 1.0",
+        "azimuth_deg = [0, 1, 2, 1]\nelevation_deg = [45, 45, 45, 46]",
     );
     assert!(told.contains("one plane"), "{told}");
 }

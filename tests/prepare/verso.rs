@@ -1,11 +1,13 @@
 //! A verso put in its place by the ink that shows through.
 
+use std::fs;
+
 use recto::{
-    maps::{ColourEncoding, registration::propose::Mismatch},
+    maps::{ColourEncoding, encode, registration::propose::Mismatch},
     prepare::verso::{Place, between},
 };
 
-use super::{folder, support::data};
+use super::{folder, interrupted, support::data};
 use crate::test_name;
 
 /// The leaves were scanned at 400 dpi.
@@ -55,4 +57,37 @@ fn a_leafs_verso_is_placed_and_another_leafs_is_not() {
         Mismatch::FewPeaks { .. } | Mismatch::NoAgreement { .. }
     ));
     assert!(wrong.told().contains("assumed") && wrong.told().contains("control_points"));
+}
+
+#[test]
+fn a_verso_without_show_through_keeps_its_edges() {
+    let folder = folder();
+    let capture = interrupted::capture(folder.path(), 160);
+    let text = fs::read_to_string(&capture).expect("text");
+    let scan = folder.path().join("scan.png");
+    encode::save_png_grey16(&scan, 4, 4, &[30_000; 16], None).expect("written");
+    let more = "verso.photographs = [\"r0.png\", \"r1.png\", \"r2.png\", \"r3.png\"]\n\
+                relief = { compare = \"scan.png\", compare_range_um = [-100, 100] }\n";
+    fs::write(&capture, text + more).expect("written");
+    let out = folder.path().join("out");
+    let report = interrupted::run(&capture, &out).expect("prepared");
+    assert!(
+        matches!(report.verso, Some(Place::ByEdges(_))),
+        "{:?}",
+        report.verso
+    );
+    let manifest = fs::read_to_string(out.join("exhibit.toml")).expect("text");
+    assert!(
+        manifest.contains("register = { flip = \"horizontal\" }"),
+        "{manifest}"
+    );
+    // The page says so, and how the shape differs from the other surface, which is flat.
+    let page = fs::read_to_string(out.join("report.html")).expect("text");
+    assert!(page.contains("the edges of its photographs"));
+    assert!(page.contains("In comparison with") && page.contains("larger than the sheet"));
+    let compared = report.sides[0].compared.as_ref().expect("a comparison");
+    let [low, high] = report.sides[0].shape_um;
+    assert!(compared.whole.sigma > 0.0 && compared.whole.sigma <= high - low);
+    assert!(report.sides[1].compared.is_none());
+    assert!(out.join("maps/shape.glb").is_file());
 }

@@ -252,7 +252,7 @@ fn propose(first: &Grey, second: &Grey, reach_mm: f64, kind: Kind) -> Proposal {
 
 /// The largest set of points that agree on a similarity, and that similarity: every two points
 /// are tried (M. A. Fischler, R. C. Bolles, *Commun. ACM* 24 (1981) 381, without its chance).
-pub(super) fn agreement(
+fn agreement(
     points: &[Proposed],
     px_per_mm: f64,
     tolerance_mm: f64,

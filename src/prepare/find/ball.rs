@@ -19,8 +19,10 @@ use crate::{
 /// The radius of the ball, in pixels, in the pictures that its outline is measured in: a tenth of
 /// a pixel there is 0.03° of a lamp.
 const FINE_RADIUS: f64 = 400.0;
-/// How much of the surroundings these show, in radii.
-const AROUND: f64 = 0.12;
+/// Half the side of what is looked at closer around a small one, in radii.
+const CLOSE: f64 = 1.8;
+/// How much of the surroundings the finest pictures show, in radii.
+const AROUND: f64 = 0.25;
 
 /// The outline of the one ball in these photographs, in their pixels.
 ///
@@ -49,31 +51,35 @@ pub(super) fn outline(
     let (pictures, small) = read(whole(size), step)?;
     let found = ball::find(&pictures, small).map_err(|why| refused(why.scaled(step as f64)))?;
     drop(pictures);
-    let found = ball::scaled(found, step as f64);
-    // The same at the scale of the edge.
-    let reach = found.radius * (1.0 + AROUND);
-    let low = (found.centre - reach).max(DVec2::ZERO);
-    let high = found.centre + reach;
-    let crop = Crop {
-        left: low.x as u32,
-        top: low.y as u32,
-        right: (high.x.ceil() as u32).min(size[0]),
-        bottom: (high.y.ceil() as u32).min(size[1]),
+    let mut found = ball::scaled(found, step as f64);
+    let crop = |circle: Circle, reach: f64| -> (Crop, DVec2) {
+        let low = (circle.centre - reach).max(DVec2::ZERO).floor();
+        let high = circle.centre + reach;
+        let crop = Crop {
+            left: low.x as u32,
+            top: low.y as u32,
+            right: (high.x.ceil() as u32).min(size[0]),
+            bottom: (high.y.ceil() as u32).min(size[1]),
+        };
+        (crop, low)
     };
+    if step > 1 && found.radius < ball::CLEAR_RADIUS * step as f64 {
+        // A small one, once more from nearer.
+        let (crop, corner) = crop(found, CLOSE * found.radius);
+        let step = ((found.radius / (2.0 * ball::CLEAR_RADIUS)) as usize).max(1);
+        let (pictures, close) = read(crop, step)?;
+        let seen = ball::find(&pictures, close)
+            .map_err(|why| refused(why.scaled(step as f64).moved(corner)))?;
+        found = ball::moved(ball::scaled(seen, step as f64), corner);
+    }
+    // The same at the scale of the edge.
+    let (crop, corner) = crop(found, found.radius * (1.0 + AROUND));
     let step = ((found.radius / FINE_RADIUS) as usize).max(1);
     let (pictures, fine) = read(crop, step)?;
-    let corner = DVec2::new(f64::from(crop.left), f64::from(crop.top));
-    let around = Circle {
-        centre: (found.centre - corner) / step as f64,
-        radius: found.radius / step as f64,
-    };
+    let around = ball::scaled(ball::moved(found, -corner), (step as f64).recip());
     let refined = ball::refine(&pictures, fine, around)
         .ok_or_else(|| refused(ball::NoBall::Ragged(found)))?;
-    let refined = ball::scaled(refined, step as f64);
-    let circle = Circle {
-        centre: refined.centre + corner,
-        ..refined
-    };
+    let circle = ball::moved(ball::scaled(refined, step as f64), corner);
     let low = circle.centre - circle.radius;
     let high = circle.centre + circle.radius;
     let inside = low.min_element() >= 0.0 && high.x <= width as f64 && high.y <= height as f64;

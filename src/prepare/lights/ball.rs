@@ -42,8 +42,10 @@ const GLEAM: f32 = 2.0;
 const GLEAM_SHARE: f64 = 0.2;
 /// The share of photographs in which a ball gleams.
 const GLEAMS: f64 = 0.8;
+/// The radius in pixels from which on an outline is clear: below, it is looked at again, closer.
+pub const CLEAR_RADIUS: f64 = 40.0;
 /// Circles whose radii differ by less, as a share, around nearly one centre, are one outline.
-const ONE_OUTLINE: f64 = 0.2;
+const ONE_OUTLINE: f64 = 0.4;
 /// Of a round outline in a ball, the greatest radius, in radii of the ball, that is taken for
 /// something that it mirrors.
 const MIRRORED: f64 = 0.35;
@@ -66,14 +68,30 @@ pub enum NoBall {
 impl NoBall {
     /// The same, told in pixels that are `step` times smaller.
     pub fn scaled(self, step: f64) -> Self {
-        let scaled = |circle| scaled(circle, step);
+        self.with(|circle| scaled(circle, step))
+    }
+
+    /// The same, told from another corner.
+    pub fn moved(self, by: DVec2) -> Self {
+        self.with(|circle| moved(circle, by))
+    }
+
+    fn with(self, change: impl Fn(Circle) -> Circle) -> Self {
         match self {
             Self::None => Self::None,
-            Self::Dull(circle) => Self::Dull(scaled(circle)),
-            Self::Outside(circle) => Self::Outside(scaled(circle)),
-            Self::Ragged(circle) => Self::Ragged(scaled(circle)),
-            Self::Several(a, b) => Self::Several(scaled(a), scaled(b)),
+            Self::Dull(circle) => Self::Dull(change(circle)),
+            Self::Outside(circle) => Self::Outside(change(circle)),
+            Self::Ragged(circle) => Self::Ragged(change(circle)),
+            Self::Several(a, b) => Self::Several(change(a), change(b)),
         }
+    }
+}
+
+/// A circle in pixels from another corner.
+pub fn moved(circle: Circle, by: DVec2) -> Circle {
+    Circle {
+        centre: circle.centre + by,
+        ..circle
     }
 }
 
@@ -117,9 +135,11 @@ pub fn find(pictures: &[Vec<f32>], size: [usize; 2]) -> Result<Circle, NoBall> {
             (None, None) => NoBall::None,
         });
     };
-    // What a ball mirrors may be round, but is small.
+    // What a ball mirrors may be round, but is small; and of a ball of few pixels, circles of other
+    // sizes in it say nothing.
     let mirrored = |circle: Circle| {
-        circle.radius < MIRRORED * best.radius && best.centre.distance(circle.centre) < best.radius
+        let small = circle.radius < MIRRORED * best.radius || best.radius < CLEAR_RADIUS;
+        small && best.centre.distance(circle.centre) < best.radius
     };
     let other = balls
         .iter()
@@ -429,7 +449,7 @@ pub fn refine(pictures: &[Vec<f32>], size: [usize; 2], around: Circle) -> Option
     let edges = Edges::new(size, pictures.iter().map(Vec::as_slice));
     let mut circle = around;
     let mut agree = 0.0;
-    for share in [0.06, 0.03, 0.015, 0.01, 0.01] {
+    for share in [0.12, 0.06, 0.03, 0.015, 0.01, 0.01] {
         let reach = (share * circle.radius).max(2.0);
         (circle, agree) = fitted(&edges, circle, reach, FINE_DIRECTIONS)?;
     }

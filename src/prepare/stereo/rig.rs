@@ -11,6 +11,14 @@ pub enum Standing {
     Near(Vec<DVec3>),
 }
 
+impl Standing {
+    /// Unit vectors towards the lamps, from the middle of the photograph.
+    pub fn directions(&self) -> Vec<DVec3> {
+        let (Self::Far(lamps) | Self::Near(lamps)) = self;
+        lamps.iter().map(|lamp| lamp.normalize()).collect()
+    }
+}
+
 /// What photographs are in proportion to.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Gain {
@@ -56,14 +64,6 @@ impl Rig {
         match &self.standing {
             Standing::Far(lamps) | Standing::Near(lamps) => lamps.len(),
         }
-    }
-
-    /// The number of the lamp that stands highest above the sheet, as seen from the middle.
-    pub fn highest(&self) -> usize {
-        let (Standing::Far(lamps) | Standing::Near(lamps)) = &self.standing;
-        let heights = lamps.iter().map(|lamp| lamp.normalize().z);
-        let highest = heights.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        highest.map_or(0, |(i, _)| i)
     }
 
     /// Whether every place sees the lamps alike.
