@@ -83,7 +83,7 @@ fn the_mesh_is_the_shape() {
     eprintln!("off by at most {worst:.1} µm");
     assert!(worst < MESH_UM, "{worst}");
     // A flat sheet is two triangles.
-    surface::save(&vec![0.0; 6], 3, SIZE_MM, folder.path()).expect("written");
+    surface::save(&[0.0; 6], 3, SIZE_MM, folder.path()).expect("written");
     assert_eq!(load_gltf(&path).expect("a model").indices.len(), 6);
 }
 

@@ -38,7 +38,7 @@ pub(super) fn capture(folder: &Path, side: usize) -> PathBuf {
             .map(|p| {
                 // Nowhere the same again: a pattern may be taken for itself, shifted.
                 let (u, v) = (p % side / 7, p / side / 5);
-                let stroke = mixed(u * 1000 + v) % 9 == 0;
+                let stroke = mixed(u * 1000 + v).is_multiple_of(9);
                 let noise = mixed(p * 4 + i) % 613;
                 (if stroke { 9_000 } else { 38_000 } + 12 * noise) as u16
             })
