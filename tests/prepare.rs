@@ -2,29 +2,42 @@
 
 mod support;
 
+#[path = "prepare/ball.rs"]
+mod ball;
 #[path = "prepare/capture.rs"]
 mod capture;
 #[path = "prepare/chain.rs"]
 mod chain;
+#[path = "prepare/chart.rs"]
+mod chart;
 #[path = "prepare/colour.rs"]
 mod colour;
 #[path = "prepare/gloss.rs"]
 mod gloss;
+#[path = "prepare/interrupted.rs"]
+mod interrupted;
 #[path = "prepare/lights.rs"]
 mod lights;
 #[path = "prepare/made.rs"]
 mod made;
 #[path = "prepare/materials.rs"]
 mod materials;
+#[path = "prepare/gltf.rs"]
+mod model;
+#[path = "prepare/moved.rs"]
+mod moved;
 #[path = "prepare/photographs.rs"]
 mod photographs;
-
 #[path = "prepare/relief.rs"]
 mod relief;
+#[path = "prepare/ruler.rs"]
+mod ruler;
 #[path = "prepare/stereo.rs"]
 mod stereo;
 #[path = "prepare/transmission.rs"]
 mod transmission;
+#[path = "prepare/verso.rs"]
+mod verso;
 
 /// A folder that lives as long as the test.
 fn folder() -> tempfile::TempDir {

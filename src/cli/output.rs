@@ -27,6 +27,13 @@ pub fn progress(steps: u64) -> ProgressBar {
     ProgressBar::new(steps).with_style(style)
 }
 
+/// The same, with the time that is left, for work of minutes.
+pub fn long_progress(steps: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %, {eta} left {wide_msg}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(steps).with_style(style)
+}
+
 /// Finds out, before any work is done, whether the file `path` could be written, and that it is none
 /// of those that `exhibit` is made of.
 pub fn can_write_file(path: &Path, exhibit: &Exhibit) -> Result<(), Failure> {

@@ -21,7 +21,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (capture, warnings) = Capture::read(&arguments.capture)?;
     warn(&warnings);
     output::can_write_folder(&arguments.out)?;
-    let bar = output::progress(STEPS);
+    let bar = output::long_progress(STEPS);
     let report = prepare::run(&capture, &arguments.out, &mut |progress| {
         bar.set_message(progress.step);
         // A cast saturates.
@@ -29,7 +29,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     });
     bar.finish_and_clear();
     let report = report?;
-    for side in &report.sides {
+    if report.interrupted > 0 {
+        output::say(format_args!(
+            "what {} interrupted before had left in {} was removed",
+            match report.interrupted {
+                1 => "a run".to_owned(),
+                count => format!("{count} runs"),
+            },
+            arguments.out.display()
+        ));
+    }
+    for (side, stillness) in report.sides.iter().zip(&report.stillness) {
         output::say(format_args!(
             "{} × {} pixels; photographs leave {:.1} % over, {:.1} % of places were doubted",
             side.size[0],
@@ -37,6 +47,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             side.residual[0] * 100.0,
             side.doubted * 100.0
         ));
+        if let Some((_, by)) = stillness.farthest() {
+            output::say(format_args!(
+                "the farthest shift of a photograph against the others is {:.2} pixels",
+                by.length()
+            ));
+        }
+        if let Some(compared) = &side.compared {
+            output::say(format_args!(
+                "its shape differs from the other surface by {:.1} µm (standard deviation)",
+                compared.whole.sigma
+            ));
+        }
+    }
+    if let Some(verso) = &report.verso {
+        output::say(format_args!("place of the verso {}", verso.told()));
     }
     output::result(report.manifest.display())
 }

@@ -14,7 +14,7 @@ use crate::{
     },
     maps::{
         self, Placed,
-        registration::propose::{Grey, Proposal, Proposed, recto_verso, states},
+        registration::propose::{Grey, Proposal, Proposed, control_points, recto_verso, states},
     },
 };
 
@@ -156,21 +156,13 @@ fn written(
 ) -> String {
     let file = &first.albedo.file;
     let size = DVec2::new(file.size[0].into(), file.size[1].into());
-    let lines: Vec<String> = points
-        .iter()
-        .map(|point| {
-            // The first picture itself may be registered.
-            let uv = point.mm / grey.mm_per_px / size;
-            let mut mm = file.uv_from_side.inverse().transform_point2(uv);
-            if is_verso {
-                mm = frames::other_side(mm, drawing.size_mm, drawing.flip);
-            }
-            let px = point.px;
-            format!(
-                "    {{ picture = [{:.1}, {:.1}], sheet_mm = [{:.2}, {:.2}] }},",
-                px.x, px.y, mm.x, mm.y
-            )
-        })
-        .collect();
-    format!("control_points = [\n{}\n]", lines.join("\n"))
+    control_points(points.iter().map(|point| {
+        // The first picture itself may be registered.
+        let uv = point.mm / grey.mm_per_px / size;
+        let mut mm = file.uv_from_side.inverse().transform_point2(uv);
+        if is_verso {
+            mm = frames::other_side(mm, drawing.size_mm, drawing.flip);
+        }
+        (point.px, mm)
+    }))
 }

@@ -47,7 +47,7 @@ pub enum MapError {
     )]
     Profile { path: PathBuf, detail: String },
     /// The file cannot be written.
-    #[error("{}: cannot be written: {reason}", path.display())]
+    #[error("{}: cannot be written: {reason}{}", path.display(), room(reason))]
     Write { path: PathBuf, reason: io::Error },
 }
 
@@ -86,6 +86,16 @@ impl MapError {
             path: path.into(),
             reason,
         }
+    }
+}
+
+/// What to do where a disk is full; nothing of other reasons.
+pub fn room(reason: &io::Error) -> &'static str {
+    match reason.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "; make room there, or choose another disk"
+        }
+        _ => "",
     }
 }
 

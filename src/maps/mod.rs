@@ -45,7 +45,7 @@ use serde::{Deserialize, Serialize};
 pub use bands::{BandPicture, DIVERGING, load_bands_as_colour, load_bands_as_difference};
 pub use bare::{bare_albedo, mean_of};
 pub use display::DisplayProfile;
-pub use error::MapError;
+pub use error::{MapError, room};
 pub use header::{Header, probe, verify, verify_colour};
 pub use lattice::{LATTICE_STEPS, Lattice};
 pub use legend::{

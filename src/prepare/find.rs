@@ -1,6 +1,9 @@
 //! Before the bands run through: where the lamps are, how bright, what they give to each place,
 //! and how colours are corrected.
 
+mod ball;
+mod chart;
+
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
@@ -8,9 +11,9 @@ use rayon::prelude::*;
 
 use super::{
     PrepareError,
-    capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots, Sphere},
+    capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots},
     colour::{
-        chart,
+        chart::{ChartError, colours, colours_unclipped},
         correct::{self, Fitted},
     },
     flat_field::FlatField,
@@ -45,7 +48,10 @@ pub fn lamps(capture: &Capture, scratch: &Path) -> Result<FoundLamps, PrepareErr
                 true => &capture.recto.photographs,
                 false => &ball.photographs,
             };
-            let circle = circle(ball, photographs)?;
+            let circle = match ball.circle {
+                Some(circle) => circle,
+                None => self::ball::outline(photographs, capture.encoding, scratch)?,
+            };
             let found: Result<Vec<DVec3>, PrepareError> = photographs
                 .iter()
                 .map(|path| in_ball(path, capture, circle, scratch))
@@ -53,12 +59,7 @@ pub fn lamps(capture: &Capture, scratch: &Path) -> Result<FoundLamps, PrepareErr
             (Standing::Far(found?), Some(circle))
         }
     };
-    let directions: Vec<DVec3> = match &standing {
-        Standing::Far(lamps) | Standing::Near(lamps) => {
-            lamps.iter().map(|lamp| lamp.normalize()).collect()
-        }
-    };
-    let spread = lights::spread(&directions).map_err(|why| PrepareError::Lamps {
+    let spread = lights::spread(&standing.directions()).map_err(|why| PrepareError::Lamps {
         file: capture.file.clone(),
         why,
     })?;
@@ -67,11 +68,6 @@ pub fn lamps(capture: &Capture, scratch: &Path) -> Result<FoundLamps, PrepareErr
         circle,
         spread,
     })
-}
-
-fn circle(ball: &Sphere, photographs: &[PathBuf]) -> Result<Circle, PrepareError> {
-    let first = photographs.first().cloned().unwrap_or_default();
-    ball.circle.ok_or(PrepareError::NoBall { path: first })
 }
 
 /// The lamp that a ball shows in one photograph.
@@ -185,11 +181,7 @@ pub fn rig(
         Light::Relative(values) => Gain::Relative(values.clone()),
         Light::Unknown(Intensities::Equal) => Gain::Relative(vec![1.0; count]),
         Light::Unknown(Intensities::Solve) => {
-            let directions: Vec<DVec3> = match &lamps.standing {
-                Standing::Far(lamps) | Standing::Near(lamps) => {
-                    lamps.iter().map(|lamp| lamp.normalize()).collect()
-                }
-            };
+            let directions = lamps.standing.directions();
             let samples = samples(capture, shots, &rig, scratch)?;
             let found = intensity::solve(&directions, &samples);
             Gain::Relative(found.ok_or_else(|| PrepareError::Dark {
@@ -248,29 +240,29 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
     let Some(chart) = &capture.chart else {
         return Ok(None);
     };
+    let corners = self::chart::corners(chart, capture.encoding, scratch)?;
     let Chart {
         photograph,
-        corners,
         lab,
         flat_field,
+        ..
     } = chart;
     let refused = |why| PrepareError::Chart {
         path: photograph.clone(),
         why,
     };
-    let corners = corners.ok_or_else(|| refused(chart::ChartError::NotFound))?;
     let size = crate::maps::probe(photograph)?.size;
     let mut planes = planes(photograph, capture, whole(size), scratch)?;
     let [width, height] = size.map(|v| v as usize);
     // Clipping shows before the light is evened out.
     let read = |planes: &[Vec<f32>; 3]| {
-        chart::colours(
+        colours(
             planes.each_ref().map(Vec::as_slice),
             [width, height],
             corners,
         )
     };
-    let mut colours = read(&planes).map_err(refused)?;
+    let mut measured = read(&planes).map_err(refused)?;
     if let Some(card) = flat_field {
         let reflectance = match &capture.lamps.light {
             Light::FlatField { reflectance, .. } => *reflectance,
@@ -283,15 +275,13 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
             let planes = [&mut r[row.clone()], &mut g[row.clone()], &mut b[row]];
             field.divide(y, planes);
         }
-        colours = chart::colours_unclipped(
+        measured = colours_unclipped(
             planes.each_ref().map(Vec::as_slice),
             [width, height],
             corners,
         )
         .map_err(refused)?;
     }
-    let fitted = correct::fit(&colours, lab, capture.illuminant.xy());
-    fitted
-        .map(Some)
-        .ok_or_else(|| refused(chart::ChartError::Flat))
+    let fitted = correct::fit(&measured, lab, capture.illuminant.xy());
+    fitted.map(Some).ok_or_else(|| refused(ChartError::Flat))
 }

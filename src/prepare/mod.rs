@@ -4,6 +4,8 @@
 //! |---|---|
 //! | `capture.toml` → what is known of the photographs | [`capture`] |
 //! | many photographs, a band of rows at a time | [`photographs`] |
+//! | the same made smaller, to look for things in | [`reduced`] |
+//! | whether the camera was still | [`moved`] |
 //! | where the lamps are, and how bright | [`lights`] |
 //! | a lamp's light over the picture, from a grey card | [`flat_field`] |
 //! | a camera's colours → the sheet's | [`colour`] |
@@ -15,6 +17,7 @@
 //! | a picture of ink → its depth | [`depth`] |
 //! | the sheet on a light table → what its paper passes | [`transmission`] |
 //! | these four for a side | [`matter`] |
+//! | a verso's place on its recto | [`verso`] |
 //! | all of it, as a command does it | [`run`] |
 //!
 //! Lamps and normals are in the sheet's frame: x right, y up in the photograph, z towards the
@@ -31,12 +34,16 @@ pub mod linear;
 pub mod materials;
 pub mod matter;
 pub mod model;
+pub mod moved;
 pub mod photographs;
+pub mod reduced;
 pub mod relief;
 mod report;
 mod run;
+mod stage;
 pub mod stereo;
 pub mod transmission;
+pub mod verso;
 mod write;
 
 pub use run::{LampFound, PrepareError, Progress, Report, SideReport, run};

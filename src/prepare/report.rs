@@ -4,7 +4,7 @@ use std::{fmt::Write as _, fs, io::Write as _, path::Path};
 
 use super::{
     PrepareError,
-    capture::{Capture, Light, Places},
+    capture::{Capture, Circle, Light},
     colour::chart::COLORCHECKER24,
     matter,
     run::Report,
@@ -52,7 +52,7 @@ pub(super) fn preview(
 }
 
 /// Text as HTML shows it.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
@@ -120,10 +120,21 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
         }
         out += "</p>";
     }
-    for side in &report.sides {
+    if let Some(verso) = &report.verso {
+        let _ = write!(
+            out,
+            "<h2>Place of the verso</h2><p>{}.</p>",
+            escaped(&verso.told())
+        );
+    }
+    for (side, stillness) in report.sides.iter().zip(&report.stillness) {
         let name = match side.side {
             SideName::Recto => "Recto",
             SideName::Verso => "Verso",
+        };
+        let shots = match (side.side, &capture.verso) {
+            (SideName::Verso, Some(verso)) => verso,
+            _ => &capture.recto,
         };
         let [width, height] = side.size;
         let _ = write!(
@@ -131,17 +142,21 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
             "<h2>{name}</h2><table><tr><td>Size<td>{width} × {height} pixels\
              <tr><td>What the photographs leave over, median and 95 %<td>{:.1} %, {:.1} %\
              <tr><td>Places at which a photograph was doubted<td>{:.1} %\
-             <tr><td>Shape at large<td>{:.0} … {:.0} µm<tr><td>Grain and strokes<td>{:.1} … {:.1} \
+             {}<tr><td>Shape at large<td>{:.0} … {:.0} µm<tr><td>Grain and strokes<td>{:.1} … {:.1} \
              µm</table>",
             side.residual[0] * 100.0,
             side.residual[1] * 100.0,
             side.doubted * 100.0,
+            stillness.row(shots, capture.mm_per_px),
             side.shape_um[0],
             side.shape_um[1],
             side.grain_um[0],
             side.grain_um[1],
         );
         out += &matter::page(side);
+        if let (Some(comparison), Some(other)) = (&side.compared, &capture.compare) {
+            out += &comparison.table(&escaped(&other.path.to_string_lossy()));
+        }
         for (kind, words) in [
             ("albedo", "Albedo"),
             ("normal", "Normals of grain and strokes"),
@@ -175,9 +190,12 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
 
 /// Which maps are measured, fitted or assumed.
 fn sources(capture: &Capture, report: &Report) -> String {
-    let lamps = match capture.lamps.places {
-        Places::Sphere(_) => "measured, in a glossy ball",
-        _ => "as stated",
+    let lamps = match report.ball {
+        Some(Circle { centre, radius }) => format!(
+            "measured, in a glossy ball of radius {radius:.1} at {:.1}, {:.1} (pixels)",
+            centre.x, centre.y
+        ),
+        None => "as stated".to_owned(),
     };
     let light = match &capture.lamps.light {
         Light::FlatField { .. } => "measured, by a grey card for each place",

@@ -6,30 +6,34 @@ use std::{
 };
 
 use super::{
-    capture::{Capture, Light, Robustness, Shots},
+    capture::{Capture, Circle, Light, Robustness, Shots},
     colour::{
         chart::ChartError,
         correct::{Correction, Fitted},
     },
     find::{self, FoundLamps},
     flat_field::FlatFieldError,
-    lights::{self, Ill, sphere::NoHighlight},
+    lights::{self, Ill, ball::NoBall, sphere::NoHighlight},
     matter::{Bench, Gathering, MatterReport},
+    moved::{self, Moved, Stillness},
     photographs::{Stack, StackError},
     relief::{
-        compare::{range, remove_plane},
+        compare::{Comparison, range, remove_plane},
         filter::{Split, split},
         integrate::{Perimeter, Slopes, integrate},
+        surface,
     },
     report,
+    stage::Stage,
     stereo::{Gain, Response, Rig, Rows, Solver, Standing},
     transmission::TransmissionError,
+    verso,
     write::{self, SideFiles, SideText},
 };
 use crate::{
     colour::srgb_encode,
     manifest::{Exhibit, Faults, SideName},
-    maps::MapError,
+    maps::{MapError, room},
 };
 
 /// Why photographs could not be prepared. Every message names a file.
@@ -46,8 +50,10 @@ pub enum PrepareError {
     Faults(#[from] Faults),
     #[error("{}: {why}; write circle_px as centre and radius of the whole ball, or lamps by azimuth_deg and elevation_deg", path.display())]
     Ball { path: PathBuf, why: NoHighlight },
-    #[error("{}: a glossy ball is not looked for yet; write circle_px as its centre and radius in pixels", path.display())]
-    NoBall { path: PathBuf },
+    #[error("{}: {why}; photograph one whole ball, or write circle_px as its centre and radius in pixels", path.display())]
+    NoBall { path: PathBuf, why: NoBall },
+    #[error("the camera or the sheet moved: {}; photograph them again with nothing touched in between, or bring them to the place of the others and crop all alike", listed(.0))]
+    Moved(Vec<Moved>),
     #[error("{}: {why}; correct [lamps]", file.display())]
     Lamps { file: PathBuf, why: Ill },
     #[error("{}: {why}", path.display())]
@@ -61,8 +67,15 @@ pub enum PrepareError {
     },
     #[error("{}: an exhibit is there already; choose another folder or remove the file", .0.display())]
     Exists(PathBuf),
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: another `recto prepare` is at work in this folder; wait for it, or choose another one", .0.display())]
+    Busy(PathBuf),
+    #[error("{}: {reason}{}", path.display(), room(reason))]
     Folder { path: PathBuf, reason: io::Error },
+}
+
+fn listed(moved: &[Moved]) -> String {
+    let each: Vec<String> = moved.iter().map(Moved::to_string).collect();
+    each.join("; ")
 }
 
 /// How far the work is.
@@ -81,11 +94,19 @@ pub struct Report {
     pub manifest: PathBuf,
     /// In the order of the photographs.
     pub lamps: Vec<LampFound>,
+    /// The ball that they were found in.
+    pub ball: Option<Circle>,
     /// How well the lamps span space, in 0…1.
     pub spread: f64,
     /// How colours were corrected; `None` without a chart.
     pub colour: Option<Fitted>,
     pub sides: Vec<SideReport>,
+    /// Of each side, how far each photograph is shifted against the others.
+    pub stillness: Vec<Stillness>,
+    /// How the verso was put in its place; `None` without one.
+    pub verso: Option<verso::Place>,
+    /// How many interrupted runs left something in the folder, which was removed.
+    pub interrupted: usize,
 }
 
 /// A lamp as found.
@@ -115,6 +136,8 @@ pub struct SideReport {
     pub grain_um: [f64; 2],
     /// What it is made of.
     pub matter: MatterReport,
+    /// How the shape differs from the other surface that the capture names, in µm.
+    pub compared: Option<Comparison>,
 }
 
 /// Makes maps of a capture, a manifest that shows them and a report, in the folder `out`, which
@@ -151,14 +174,7 @@ fn staged(
     out: &Path,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Report, PrepareError> {
-    let folder = |path: &Path| {
-        let path = path.to_owned();
-        move |reason| PrepareError::Folder { path, reason }
-    };
-    let stage = tempfile::Builder::new()
-        .prefix(".recto-prepare-")
-        .tempdir_in(out)
-        .map_err(folder(out))?;
+    let stage = Stage::new(out)?;
     let scratch = stage.path();
     let mut tell = |step, done| progress(Progress { step, done });
     tell("looking for the lamps", 0.0);
@@ -174,12 +190,15 @@ fn staged(
         .into_iter()
         .filter_map(|(side, shots)| Some((side, shots?)))
         .collect();
+    tell("comparing the photographs", 0.04);
+    let both_shots: Vec<&Shots> = shots.iter().map(|(_, shots)| *shots).collect();
+    let stillness = moved::check_all(&both_shots, &lamps.standing.directions(), capture, scratch)?;
     let mut reports = Vec::new();
     let mut sides = Vec::new();
     let mut found_rig = None;
     for (i, (side, shots)) in shots.iter().enumerate() {
-        let from = 0.05 + 0.9 * i as f64 / shots_count(&both);
-        let share = 0.9 / shots_count(&both);
+        let from = 0.1 + 0.85 * i as f64 / shots_count(&both);
+        let share = 0.85 / shots_count(&both);
         let mut tell = |step, done: f64| tell(step, from + share * done);
         let rig = find::rig(capture, shots, &lamps, scratch)?;
         let (text, side) =
@@ -188,18 +207,26 @@ fn staged(
         sides.push(text);
         reports.push(side);
     }
+    tell("placing the verso", 0.95);
+    let verso = capture.verso.as_ref();
+    let placed = verso.map(|_| verso::place(scratch, capture.mm_per_px));
+    let placed = placed.transpose()?;
     let report = Report {
         manifest: out.join(crate::manifest::MANIFEST),
         lamps: lamps_found(&lamps, found_rig.as_ref()),
+        ball: lamps.circle,
         spread: lamps.spread,
         colour,
         sides: reports,
+        stillness,
+        verso: placed,
+        interrupted: stage.interrupted,
     };
     write::manifest(capture, &sides, &report, scratch)?;
     report::html(capture, &report, scratch)?;
     // What is written is what `recto check` passes.
     Exhibit::read(scratch)?;
-    write::publish(scratch, out)?;
+    stage.publish()?;
     progress(Progress {
         step: "done",
         done: 1.0,
@@ -317,6 +344,13 @@ fn prepare_side(
         }
     }
     let shape_um = extent(&shape);
+    let compared = match (&capture.compare, side) {
+        (Some(other), SideName::Recto) => {
+            let mm = capture.mm_per_px * large.step as f64;
+            surface::compared(&shape, large.width, mm, other)?
+        }
+        _ => None,
+    };
     let surface = maps.shape(&shape, large.width)?;
     drop((shape, large));
     maps.normal(&small)?;
@@ -340,6 +374,7 @@ fn prepare_side(
         shape_um,
         grain_um,
         matter,
+        compared,
     };
     Ok((text, report))
 }

@@ -6,6 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 use super::{
@@ -13,8 +14,11 @@ use super::{
     capture::Capture,
     depth::Depths,
     materials::legend::{self, MediaFile},
-    matter, report,
+    matter,
+    relief::surface,
+    report,
     run::Report,
+    verso::Place,
 };
 use crate::{
     manifest::{MANIFEST, SideName, check_shape},
@@ -22,7 +26,7 @@ use crate::{
 };
 
 /// The folder of maps, within the exhibit's.
-const MAPS: &str = "maps";
+pub(super) const MAPS: &str = "maps";
 
 /// Lines of a manifest about one side.
 pub(super) struct SideText {
@@ -171,6 +175,9 @@ impl<'s> SideFiles<'s> {
         let (w, h) = (width as u32, (um.len() / width.max(1)) as u32);
         let path = self.folder.join(MAPS).join("shape.png");
         save_png_grey16(&path, w, h, &levels.values, None)?;
+        let [across, down] = self.size.map(|px| px as f64 * 25.4 / self.dpi);
+        let folder = self.folder.join(MAPS);
+        surface::save(um, width, DVec2::new(across, down), &folder)?;
         Ok(format!(
             "[drawing.surface]\n\
              height = {{ file = \"{MAPS}/shape.png\", range_um = [{}, {}], source = \"measured\" }}\n",
@@ -249,7 +256,7 @@ pub(super) fn manifest(
         text += &format!("[drawing.{}]\n{}", word(side.side), side.text);
         text += &matter::side_lines(found);
         if side.side == SideName::Verso {
-            text += "register = { flip = \"horizontal\" }\n";
+            text += &report.verso.as_ref().map(Place::lines).unwrap_or_default();
         }
         text += "\n";
     }
@@ -270,23 +277,5 @@ pub(super) fn manifest(
         file.write_all(text.trim_end().as_bytes())?;
         file.write_all(b"\n")
     })?;
-    Ok(())
-}
-
-/// Moves what was staged to its place, the manifest last: whoever opens the folder meanwhile sees
-/// no exhibit, or the whole.
-pub(super) fn publish(stage: &Path, out: &Path) -> Result<(), PrepareError> {
-    let refused = |path: &Path| {
-        let path = path.to_owned();
-        move |reason| PrepareError::Folder { path, reason }
-    };
-    let maps = out.join(MAPS);
-    if maps.exists() {
-        return Err(PrepareError::Exists(maps));
-    }
-    for name in [MAPS, super::report::REPORT, MANIFEST] {
-        let to = out.join(name);
-        fs::rename(stage.join(name), &to).map_err(refused(&to))?;
-    }
     Ok(())
 }

@@ -6,9 +6,11 @@
 //! | a transform that bends | [`plate`] |
 //! | the one that a picture's points ask for, with its residuals | [`Fitted`] |
 //! | control points found in two pictures of one sheet | [`propose`] |
+//! | how far a camera moved between two photographs | [`moved`] |
 
 mod correlate;
 mod fitted;
+pub mod moved;
 pub mod plate;
 mod prepared;
 pub mod propose;

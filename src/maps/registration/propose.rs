@@ -52,6 +52,19 @@ impl Proposed {
     }
 }
 
+/// `control_points` as a manifest has them, of places in a picture in pixels and on the side in mm.
+pub fn control_points(places: impl Iterator<Item = (DVec2, DVec2)>) -> String {
+    let lines: Vec<String> = places
+        .map(|(px, mm)| {
+            format!(
+                "    {{ picture = [{:.1}, {:.1}], sheet_mm = [{:.2}, {:.2}] }},",
+                px.x, px.y, mm.x, mm.y
+            )
+        })
+        .collect();
+    format!("control_points = [\n{}\n]", lines.join("\n"))
+}
+
 /// What two pictures have to do with each other.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Proposal {

@@ -102,6 +102,16 @@ pub struct Capture {
     pub transmitted: Option<Transmitted>,
     pub swatches: Vec<Swatch>,
     pub relief: Relief,
+    /// What the shape is compared with.
+    pub compare: Option<OtherSurface>,
+}
+
+/// Another surface of the whole sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherSurface {
+    pub path: PathBuf,
+    /// Of a picture of heights, those of black and of white in µm; `None` for a glTF file.
+    pub range_um: Option<[f64; 2]>,
 }
 
 /// The lamps of a capture.

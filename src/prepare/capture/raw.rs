@@ -15,7 +15,7 @@ use crate::{
         SideName,
         decode::{List, Rule},
         macros::record,
-        raw::values::{DistanceMm, Id, MediumName, PixelPx, PositionMm, Text, TurnDeg},
+        raw::values::{DistanceMm, Id, MediumName, PixelPx, PositionMm, ReliefUm, Text, TurnDeg},
     },
     maps::ColourEncoding,
     optics::spectrum::Illuminant,
@@ -242,7 +242,13 @@ record! {
             /// From the lowest to the highest place of the sheet in µm, where it was measured.
             /// Without it: as the lamps say.
             known_range_um: KnownUm,
+            /// Another surface of the whole sheet to compare the shape with, such as one from
+            /// photogrammetry: a .glb file as surface.gltf of an exhibit has it, or a picture of
+            /// heights.
+            compare: CapturePath,
+            /// Of a picture of heights, those of black and of white in µm.
+            compare_range_um: [ReliefUm; 2],
         }
-        rules []
+        rules [Rule::Needs("compare_range_um", "compare")]
     }
 }

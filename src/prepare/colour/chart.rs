@@ -130,6 +130,12 @@ pub enum ChartError {
         "the chart's patches have one hue: it lies under coloured light, or is no chart; correct its corners or the photograph"
     )]
     Flat,
+    #[error("the patch \"{}\" is covered, shines or is not of the chart's colours; photograph the chart again, or write the middles of its corner patches as corners_px", name(*.0))]
+    Covered(usize),
+    #[error(
+        "more than one chart is seen, or it may lie in several ways; write the middles of its corner patches as corners_px"
+    )]
+    Several,
     #[error("no chart was found; write the middles of its corner patches as corners_px")]
     NotFound,
 }

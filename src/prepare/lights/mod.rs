@@ -8,8 +8,10 @@
 //!
 //! All in the sheet's frame: x right, y up in the photograph, z towards the camera.
 
+pub mod ball;
 pub mod intensity;
 pub mod lp;
+mod outline;
 pub mod sphere;
 
 use glam::{DMat3, DVec3};

@@ -25,6 +25,29 @@ pub struct Comparison {
     pub patches: Vec<(f64, Vec<Spread>)>,
 }
 
+impl Comparison {
+    /// A table of a report, in µm, of the surface `other`.
+    pub(in crate::prepare) fn table(&self, other: &str) -> String {
+        let Spread { sigma, count, .. } = self.whole;
+        let mut out = format!(
+            "<h3>In comparison with {other}</h3><p>Shift and tilt of the whole taken out.</p><table>\
+             <tr><th>Where<th>Mean<th>σ<tr><td>all of it, {count} places<td>0.0 µm<td>{sigma:.1} µm"
+        );
+        for (mm, patches) in &self.patches {
+            for (i, Spread { mean, sigma, .. }) in patches.iter().enumerate() {
+                out += &format!(
+                    "<tr><td>patch {} of {mm:.0} mm<td>{mean:.1} µm<td>{sigma:.1} µm",
+                    i + 1
+                );
+            }
+            if patches.is_empty() {
+                out += &format!("<tr><td>patches of {mm:.0} mm<td colspan=2>larger than the sheet");
+            }
+        }
+        out + "</table>"
+    }
+}
+
 /// The sizes of patches that the article compares over, in mm.
 pub const PATCHES_MM: [f64; 2] = [100.0, 50.0];
 

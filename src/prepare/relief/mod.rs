@@ -6,8 +6,10 @@
 //! | normals → heights | [`integrate`] |
 //! | cosine and sine transforms | `transform` |
 //! | heights of two surfaces, and their planes | [`compare`] |
+//! | heights → mesh, and another surface → heights | [`surface`] |
 
 pub mod compare;
 pub mod filter;
 pub mod integrate;
+pub mod surface;
 mod transform;

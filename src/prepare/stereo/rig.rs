@@ -11,6 +11,14 @@ pub enum Standing {
     Near(Vec<DVec3>),
 }
 
+impl Standing {
+    /// Unit vectors towards the lamps, from the middle of the photograph.
+    pub fn directions(&self) -> Vec<DVec3> {
+        let (Self::Far(lamps) | Self::Near(lamps)) = self;
+        lamps.iter().map(|lamp| lamp.normalize()).collect()
+    }
+}
+
 /// What photographs are in proportion to.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Gain {

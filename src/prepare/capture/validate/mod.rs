@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use super::{
-    BARE_PAPER, Capture, Chart, Crop, Relief, Shots, Swatch, Transmitted,
+    BARE_PAPER, Capture, Chart, Crop, OtherSurface, Relief, Shots, Swatch, Transmitted,
     raw::{RawCapture, RawChart, RawRelief, RawScale, RawShots, RawSwatch, RawTransmitted},
 };
 use crate::{
@@ -21,6 +21,7 @@ use crate::{
         quote, quoted_list,
         raw::values::PixelPx,
     },
+    maps::surface::load_gltf,
     optics::{
         medium::{MediumId, MediumKind},
         spectrum::Illuminant,
@@ -71,6 +72,8 @@ impl Validator<'_, '_> {
             transmitted.map(|raw| self.transmitted(raw, size, &root.key("transmitted")));
         let of_verso = verso.as_ref().and_then(Option::as_ref);
         let swatches = self.swatches(raw, recto.as_ref(), of_verso, &root.key("swatch"));
+        let compare = raw.relief.as_ref();
+        let compare = compare.and_then(|relief| self.compare(relief, &root.key("relief")));
         Some(Capture {
             file: file.to_owned(),
             id: raw.id.as_str().to_owned(),
@@ -94,6 +97,7 @@ impl Validator<'_, '_> {
             },
             swatches,
             relief: relief(raw.relief.as_ref()),
+            compare,
         })
     }
 
@@ -241,6 +245,51 @@ impl Validator<'_, '_> {
             lab,
             flat_field,
         })
+    }
+
+    /// Another surface of the sheet; `None` also where it cannot be used, of which there is a fault.
+    fn compare(&mut self, raw: &RawRelief, trail: &Trail) -> Option<OtherSurface> {
+        let path = self.path(raw.compare.as_ref()?);
+        let key = trail.key("compare");
+        let is_model = path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+        let range_um = raw.compare_range_um.map(|range| range.map(|um| um.0));
+        if !is_model {
+            self.same_size(&[(&path, key)], None)?;
+        } else if let Err(error) = load_gltf(&path) {
+            let words = Words::new(
+                error.to_string(),
+                "a .glb file with one triangle mesh and texture coordinates, in mm",
+                "export it again, or write a picture of heights and compare_range_um",
+            );
+            self.report.fault(&key, words);
+            return None;
+        }
+        let (found, allowed, remedy) = match (is_model, range_um) {
+            (true, None) => return Some(OtherSurface { path, range_um }),
+            (false, Some([low, high])) if low < high => {
+                return Some(OtherSurface { path, range_um });
+            }
+            (true, Some(_)) => (
+                "a range of heights with a .glb file".to_owned(),
+                "a range with pictures only",
+                "remove compare_range_um: the file is in mm",
+            ),
+            (false, None) => (
+                "a picture of heights without its range".to_owned(),
+                "the heights of black and of white",
+                "add compare_range_um = [black, white] in µm",
+            ),
+            (false, Some([low, high])) => (
+                format!("black at {low} and white at {high} µm"),
+                "white higher than black",
+                "write the height of black first",
+            ),
+        };
+        let words = Words::new(found, allowed, remedy);
+        self.report.fault(&trail.key("compare_range_um"), words);
+        None
     }
 
     fn table(&mut self, path: &Path, trail: &Trail) -> Option<Vec<[f64; 3]>> {
