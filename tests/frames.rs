@@ -14,6 +14,8 @@ mod show_through;
 mod baselines;
 #[path = "frames/capture.rs"]
 mod capture;
+#[path = "frames/changes.rs"]
+mod changes;
 #[path = "frames/colour.rs"]
 mod colour;
 #[path = "frames/compare.rs"]
