@@ -117,8 +117,8 @@ pattern! {
         "write hours and minutes with two digits each";
     /// From one time of day to another; past midnight where it ends no later than it begins.
     SpanText = "^([01][0-9]|2[0-3]):[0-5][0-9]-(([01][0-9]|2[0-3]):[0-5][0-9]|24:00)$", is_span,
-        "two times of day such as \"10:00-18:00\", or \"18:00-02:00\" past midnight",
-        "write hours and minutes with two digits each, and a hyphen between them";
+        "two times of day from \"00:00\" to \"24:00\", such as \"10:00-18:00\", or \"18:00-02:00\" past midnight",
+        "write hours up to 24 and minutes up to 59 with two digits each, and a hyphen between them";
     /// A day of one year, a day of every year, or the days from one to another.
     ClosedText = "^([0-9]{4}-)?(0[1-9]|1[0-2])-(0[1-9]|[12][0-9]|3[01])$|^[0-9]{4}-(0[1-9]|1[0-2])-(0[1-9]|[12][0-9]|3[01])/[0-9]{4}-(0[1-9]|1[0-2])-(0[1-9]|[12][0-9]|3[01])$",
         is_closed_text,

@@ -26,6 +26,8 @@ const SCALE_STEPS: u32 = 1024;
 const FIRST_ORDER: isize = -4;
 /// Frames until new images, cameras and pipelines draw.
 const LEAVING_FRAMES: u32 = 4;
+/// A sheet that is new draws nothing in its first frame; the one before it goes with the second.
+const SHEET_FRAMES: u32 = 2;
 
 /// Size of the picture in pixels.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,11 +42,17 @@ pub struct PictureCamera;
 pub struct MemberCamera;
 
 /// Goes some frames later, when what takes its place has reached the picture.
-#[derive(Component)]
+#[derive(Component, Clone, Copy, Debug)]
 pub struct Retired(u32);
 
-impl Default for Retired {
-    fn default() -> Self {
+impl Retired {
+    /// A sheet in whose place another one lies.
+    pub fn sheet() -> Self {
+        Self(SHEET_FRAMES)
+    }
+
+    /// A sheet, or a last pass, over which a new pass is built.
+    pub fn under_last_pass() -> Self {
         Self(LEAVING_FRAMES)
     }
 }
@@ -110,7 +118,7 @@ pub fn compose(
             let mut entity = commands.entity(entity);
             // Two last passes would cover each other.
             if count == 0 {
-                entity.insert(Retired::default());
+                entity.insert(Retired::under_last_pass());
             } else {
                 entity.despawn();
             }

@@ -183,15 +183,16 @@ pub fn arrange(
             return;
         };
         library.bypass_change_detection().keep(&requests);
-        // Under a last pass that is only being built, the last picture stays.
-        let stays = composite && !arranged.composite;
+        // The last picture stays until there is another: a new sheet is drawn from its second frame on,
+        // and a last pass that is only being built later still.
+        let is_built = composite && !arranged.composite;
+        let stays = if is_built {
+            Retired::under_last_pass()
+        } else {
+            Retired::sheet()
+        };
         for side in arranged.sides.drain(..) {
-            let mut entity = commands.entity(side.entity);
-            if stays {
-                entity.insert(Retired::default());
-            } else {
-                entity.despawn();
-            }
+            commands.entity(side.entity).insert(stays);
         }
         arranged.fresh = true;
         let mut held = held.into_iter();

@@ -8,7 +8,7 @@
 //!
 //! `completed` and `requested` count frames since the program began, `unix_ms` is when that was
 //! true, for people; whoever judges goes by when the line *changed*, so that a clock that is set
-//! does no harm. `state` is `running`, or how a program that is about to end wants that taken:
+//! does no harm. `state` is `starting` until there is a picture, then `running`, or how a program that is about to end wants that taken:
 //! `end` (staff asked for it) or `restart` (it is to begin anew at once).
 
 use std::{
@@ -33,8 +33,10 @@ const LONGEST: u64 = 256;
 /// How a program that ends wants that taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum State {
-    /// It did not mean to end.
+    /// It has yet to show a picture.
     #[default]
+    Starting,
+    /// It shows its picture, and does not mean to end.
     Running,
     /// Staff asked for it: it stays ended.
     End,
@@ -43,10 +45,11 @@ pub enum State {
 }
 
 impl State {
-    const ALL: [Self; 3] = [Self::Running, Self::End, Self::Restart];
+    const ALL: [Self; 4] = [Self::Starting, Self::Running, Self::End, Self::Restart];
 
     fn word(self) -> &'static str {
         match self {
+            Self::Starting => "starting",
             Self::Running => "running",
             Self::End => "end",
             Self::Restart => "restart",
@@ -194,6 +197,15 @@ impl Heart {
         self.tell(|beat| {
             beat.completed = completed;
             beat.requested = requested;
+        });
+    }
+
+    /// The picture is there, with all that belongs to it.
+    pub fn shows(&self) {
+        self.tell(|beat| {
+            if beat.state == State::Starting {
+                beat.state = State::Running;
+            }
         });
     }
 

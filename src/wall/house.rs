@@ -23,6 +23,7 @@ use glam::DVec2;
 use wgpu::PollType;
 
 use super::{
+    desktop::{self, Desktop},
     heartbeat::Heart,
     keeper::{self, Clock, Keeper},
     panes::{self, PaneMaterial, PanesPlugin},
@@ -123,6 +124,7 @@ pub fn furnish(app: &mut App, keeper: Keeper, wordings: Wordings) {
         (
             keeper::keep.before(StageSet::Steer),
             keeper::tell.after(StageSet::Steer),
+            desktop::look.run_if(resource_exists::<Desktop>),
         ),
     );
 }
@@ -162,6 +164,9 @@ fn hang(app: &mut App, wall: &Wall, machine: Option<&Machine>) {
         .iter()
         .flat_map(|(window, of)| of.iter().map(|(pane, _)| (*window, pane)));
     world.insert_resource(glass_of(wall, &own.collect::<Vec<_>>(), size));
+    let windows = hung.iter().map(|(window, _)| *window);
+    let windows = windows.zip(layout.iter().cloned()).collect();
+    world.insert_resource(Desktop::new(&wall.displays, windows));
     let mut hung = Some(hung);
     app.add_systems(
         PostStartup,

@@ -196,6 +196,17 @@ impl Files {
     }
 }
 
+/// Whether lines can be written to a folder, which is made if it is not there.
+///
+/// # Errors
+/// Of making the folder or a file in it.
+pub fn can_write(folder: &Path) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
+    let path = folder.join(CURRENT);
+    let file = OpenOptions::new().create(true).append(true).open(path);
+    file.map(drop)
+}
+
 impl Write for Files {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
         if self.append(line).is_err() {

@@ -7,13 +7,13 @@ use std::{
     time::Duration,
 };
 
-use bevy::prelude::*;
+use bevy::{prelude::*, window::RequestRedraw};
 use jiff::{Timestamp, Zoned};
 
 use super::{
     health::{self, Health},
     heartbeat::{self, Heart},
-    journal::{Journal, Level},
+    journal::{self, Journal, Level},
     status::Status,
     together::{self, Following, Party, Turn},
     usage::Usage,
@@ -29,6 +29,8 @@ use crate::{
     visitor::{AskAgain, Attract, Closed, ShowError, StaffWish, controls::Staff},
 };
 
+/// A new sheet is drawn in its second frame, and a picture is there when the frame after it is asked for.
+const DRAWN_AFTER: u32 = 3;
 /// As long as a scene is looked at before it is counted again.
 const COUNT: f64 = 10.0;
 
@@ -74,6 +76,8 @@ pub struct Keeper {
     asked: bool,
     /// Something was on the wall already.
     has_shown: bool,
+    /// Frames since everything for the first picture was there.
+    settled_frames: u32,
     /// When it opens or closes next.
     change: Option<Zoned>,
     /// The staff keeps the hours away, until the next change.
@@ -92,7 +96,11 @@ pub fn keep(
     (mut keeper, mut closed, mut due): (ResMut<Keeper>, ResMut<Closed>, ResMut<AskAgain>),
     (following, told): (Option<Res<Following>>, Option<ResMut<Turn>>),
     (mut wishes, mut verdicts): (MessageReader<StaffWish>, MessageReader<Verdict>),
-    (mut reread, mut exit): (MessageWriter<Reread>, MessageWriter<AppExit>),
+    (mut reread, mut exit, mut redraw): (
+        MessageWriter<Reread>,
+        MessageWriter<AppExit>,
+        MessageWriter<RequestRedraw>,
+    ),
     mut commands: Commands,
 ) {
     let keeper = &mut *keeper;
@@ -131,7 +139,16 @@ pub fn keep(
         exit.write(AppExit::Success);
         return;
     }
-    keeper.has_shown |= arranged.is_settled();
+    if !keeper.has_shown && arranged.is_settled() {
+        keeper.settled_frames += 1;
+        if keeper.settled_frames > DRAWN_AFTER {
+            keeper.has_shown = true;
+            if let Some(heart) = &keeper.heart {
+                heart.shows();
+            }
+        }
+        redraw.write(RequestRedraw);
+    }
     for Verdict(verdict) in verdicts.read() {
         keeper.hear(verdict);
     }
@@ -174,6 +191,15 @@ impl Keeper {
             Some(logs) => Journal::open(&logs.folder, logs.max_bytes, logs.keep, health.clone()),
             None => Journal::off(),
         };
+        if let Some(logs) = &installation.logs
+            && let Err(error) = journal::can_write(&logs.folder)
+        {
+            say(format_args!(
+                "recto: {}: logs cannot be written ({error}); make the folder writable for this user, or name \
+                 another one as folder of [logs]",
+                logs.folder.display()
+            ));
+        }
         let usage = match installation.logs.as_ref().filter(|logs| logs.usage_counts) {
             Some(logs) => Usage::open(&logs.folder, health.clone()),
             None => Usage::off(),
@@ -202,6 +228,7 @@ impl Keeper {
             ahead: 0,
             asked: false,
             has_shown: false,
+            settled_frames: 0,
             change: installation.hours.next_change(&now),
             stays: false,
             was_open: true,
@@ -216,6 +243,12 @@ impl Keeper {
             clock,
             installation,
         }
+    }
+
+    /// Tells the log and whoever started the program.
+    pub fn note(&self, level: Level, words: &str) {
+        self.journal.write(level, words, &[]);
+        say(format_args!("recto: {words}"));
     }
 
     fn now(&self) -> Zoned {

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`house`] | an installation's displays, manners and words, and the window that has them |
 //! | [`keeper`] | follows the clock, the staff and the visitors in it |
+//! | [`desktop`] | whether displays are where the file says, by the monitors there are |
 //! | [`panes`] | one picture over several displays |
 //! | [`together`] | several machines of one wall: one leads, the others follow |
 //! | [`publish`] | an exhibit's new version, whole or not at all |
@@ -15,6 +16,7 @@
 //! | [`journal`] | lines in files that never fill the disk |
 //! | [`usage`] | counts of scenes and languages, without people |
 
+pub mod desktop;
 pub mod health;
 pub mod heartbeat;
 pub mod house;

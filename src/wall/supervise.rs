@@ -97,6 +97,7 @@ pub struct Watch {
     /// Since when more frames are begun than completed, at this number of completed ones.
     behind: Option<(u64, Instant)>,
     first_frame: Option<Instant>,
+    first_picture: Option<Instant>,
 }
 
 impl Watch {
@@ -108,6 +109,7 @@ impl Watch {
             last: None,
             behind: None,
             first_frame: None,
+            first_picture: None,
         }
     }
 
@@ -126,6 +128,9 @@ impl Watch {
             };
         };
         self.first_frame.get_or_insert(now);
+        if beat.state != State::Starting {
+            self.first_picture.get_or_insert(now);
+        }
         if beat.requested <= beat.completed {
             self.behind = None;
         } else if self.behind.is_none_or(|(at, _)| at != beat.completed) {
@@ -145,6 +150,11 @@ impl Watch {
     /// When the first frame was complete.
     pub fn first_frame(&self) -> Option<Instant> {
         self.first_frame
+    }
+
+    /// When the first picture was there, with all that belongs to it.
+    pub fn first_picture(&self) -> Option<Instant> {
+        self.first_picture
     }
 }
 
@@ -309,7 +319,7 @@ impl Supervisor<'_> {
     /// Until the child has ended, whoever ended it.
     fn look_after(&mut self, mut child: Child) -> Outcome {
         let mut watch = Watch::new(self.supervised.limits, Instant::now());
-        let mut shown = false;
+        let (mut draws, mut shown) = (false, false);
         let mut doubted = false;
         loop {
             if let Some(signal) = self.pause(LOOK) {
@@ -320,7 +330,12 @@ impl Supervisor<'_> {
             }
             let beat = Beat::read(&self.heartbeat);
             let health = watch.look(Instant::now(), beat);
-            if let (false, Some(first)) = (shown, watch.first_frame()) {
+            if !draws && watch.first_frame().is_some() {
+                draws = true;
+                self.ever_shown = true;
+                notify(&[NotifyState::Ready]);
+            }
+            if let (false, Some(first)) = (shown, watch.first_picture()) {
                 shown = true;
                 self.is_back(first);
             }
@@ -360,7 +375,7 @@ impl Supervisor<'_> {
         }
     }
 
-    /// The first frame of a child is complete.
+    /// The first picture of a child is there.
     fn is_back(&mut self, first: Instant) {
         let status = match self.restarts {
             0 => "shows its picture".to_owned(),
@@ -371,8 +386,7 @@ impl Supervisor<'_> {
             let without = first.saturating_duration_since(down);
             self.log(&format!("back, after {} without a picture", Span(without)));
         }
-        self.ever_shown = true;
-        notify(&[NotifyState::Ready, NotifyState::Status(&status)]);
+        notify(&[NotifyState::Status(&status)]);
     }
 
     fn ended(&mut self, status: ExitStatus, state: State) -> Outcome {
@@ -383,7 +397,9 @@ impl Supervisor<'_> {
                 Outcome::Stay(Ended::Asked)
             }
             (Some(0), State::Restart) => Outcome::Restart(now),
-            (Some(0), State::Running) => failed("ended, and nobody asked for it".to_owned(), now),
+            (Some(0), State::Starting | State::Running) => {
+                failed("ended, and nobody asked for it".to_owned(), now)
+            }
             (Some(USAGE), _) if !self.ever_shown => Outcome::Stay(Ended::WrongUsage),
             (Some(code), _) => failed(format!("ended with code {code}"), now),
             (None, _) => failed(format!("crashed ({status})"), now),

@@ -114,11 +114,11 @@ fn what_is_not_shown_yet_is_said_by_check_alone() {
     let sheet = Sheet::new();
     let manifest = sheet.exhibit().join("exhibit.toml");
     let text = fs::read_to_string(&manifest).unwrap();
-    let tour = "\n[[tour]]\nid = \"attract\"\nscenes = [\"whole\"]\n";
-    fs::write(&manifest, text + tour).unwrap();
+    let paper = "paper = { kind = \"laid\", chain_lines_mm = 24 }\nsize_mm";
+    fs::write(&manifest, text.replacen("size_mm", paper, 1)).unwrap();
     let check = recto().arg("check").arg(sheet.exhibit()).output().unwrap();
     assert!(
-        stdout(&check).contains("tours do not run yet"),
+        stdout(&check).contains("chain_lines_mm of the paper does not change the picture yet"),
         "{}",
         stdout(&check)
     );

@@ -28,7 +28,7 @@ size_mm = [96, 64]
 recto.albedo = "recto.png"
 [[drawing.state]]
 id = "before"
-name = { en = "Before" }
+title = { en = "Before" }
 recto.albedo = "before.png"
 [[lamp]]
 id = "above"

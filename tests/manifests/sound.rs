@@ -287,10 +287,7 @@ fn sound_pictures_pass_and_a_damaged_one_is_named_where_it_is_written() {
 fn what_is_not_shown_yet_is_named() {
     assert_eq!(
         read(FULL).not_shown_yet,
-        [
-            "Drawing \"landscape\": chain_lines_mm of the paper does not change the picture yet.",
-            "Tour \"attract\": tours do not run yet.",
-        ]
+        ["Drawing \"landscape\": chain_lines_mm of the paper does not change the picture yet."]
     );
 }
 

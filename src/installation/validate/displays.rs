@@ -218,7 +218,7 @@ impl Validator<'_, '_> {
                 let words = Words::new(
                     format!("{} ({reason})", quote(icc.as_str())),
                     "an ICC profile of an RGB display",
-                    "export it again so, or write white_xy, gamma and luminance_nits",
+                    "correct the path or export it again so, or write white_xy, gamma and luminance_nits",
                 );
                 self.report.fault(&trail.key("icc"), words);
                 Profile::Srgb
