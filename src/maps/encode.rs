@@ -1,6 +1,7 @@
 //! Pixels → files, each written whole or not at all and with the same bytes for the same input.
 
 use std::{
+    cell::Cell,
     fs::File,
     io::{self, BufWriter, Write},
     path::Path,
@@ -24,12 +25,13 @@ use crate::colour::{D65, SRGB_PRIMARIES};
 /// [`MapError::Write`]; nothing is left behind.
 pub fn write_whole(
     path: &Path,
-    fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+    fill: impl FnOnce(&mut BufWriter<Kept<'_>>) -> io::Result<()>,
 ) -> Result<(), MapError> {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
+    let failed = Cell::new(None);
     let write = || -> io::Result<()> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".recto-");
@@ -37,7 +39,11 @@ pub fn write_whole(
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder)?;
-        let mut writer = BufWriter::with_capacity(1 << 18, file.as_file());
+        let kept = Kept {
+            file: file.as_file(),
+            failed: &failed,
+        };
+        let mut writer = BufWriter::with_capacity(1 << 18, kept);
         fill(&mut writer)?;
         writer.flush()?;
         drop(writer);
@@ -45,7 +51,41 @@ pub fn write_whole(
         file.persist(path)?;
         Ok(())
     };
-    write().map_err(|source| MapError::write(path, source))
+    write().map_err(|source| {
+        let first = failed.get().map(io::Error::from_raw_os_error);
+        MapError::write(path, first.unwrap_or(source))
+    })
+}
+
+/// A file that keeps the system's first error in writing it: encoders pass on no more than its
+/// words.
+pub struct Kept<'f> {
+    file: &'f File,
+    failed: &'f Cell<Option<i32>>,
+}
+
+impl Kept<'_> {
+    fn keep<T>(&self, result: io::Result<T>) -> io::Result<T> {
+        if let Err(error) = &result
+            && self.failed.get().is_none()
+            && error.kind() != io::ErrorKind::Interrupted
+        {
+            self.failed.set(error.raw_os_error());
+        }
+        result
+    }
+}
+
+impl Write for Kept<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes);
+        self.keep(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let flushed = self.file.flush();
+        self.keep(flushed)
+    }
 }
 
 /// Writes an 8-bit grey PNG of `width * height` pixels; `dpi` is stored where given.

@@ -10,12 +10,12 @@ use recto::{
         surface::{Model, load_gltf, save_gltf},
     },
     prepare::{
-        capture::OtherSurface,
+        capture::{Capture, OtherSurface},
         relief::surface::{self, MESH, compared, heights},
     },
 };
 
-use super::folder;
+use super::{folder, interrupted};
 
 const SIZE_MM: DVec2 = DVec2::new(240.0, 160.0);
 const WIDTH: usize = 120;
@@ -199,4 +199,55 @@ fn holes_and_faults_of_meshes_do_no_harm() {
     let error = save_gltf(&path, &model, &whole.normals).expect_err("a torn mesh");
     assert!(matches!(error, MapError::Write { .. }));
     assert!(maps::surface::load_gltf(&folder.path().join("none.glb")).is_err());
+}
+
+#[test]
+fn another_surface_is_checked_before_any_work() {
+    let folder = folder();
+    let file = interrupted::capture(folder.path(), 64);
+    let text = fs::read_to_string(&file).expect("text");
+    written(folder.path());
+    fs::write(folder.path().join("torn.glb"), "glTF, but no more").expect("written");
+    let parsed = |relief: &str| Capture::parse(&file, &format!("{text}relief = {{ {relief} }}\n"));
+    let told = |relief: &str| {
+        let faults: Vec<_> = parsed(relief).expect_err("a fault").into_iter().collect();
+        assert_eq!(faults.len(), 1, "{relief}: {faults:?}");
+        faults[0].to_string()
+    };
+    let (capture, _) = parsed("compare = \"shape.glb\"").expect("a capture");
+    assert_eq!(capture.compare, Some(mesh(folder.path())));
+    let (capture, _) =
+        parsed("compare = \"r0.png\", compare_range_um = [-5, 10.5]").expect("a capture");
+    assert_eq!(
+        capture.compare.expect("a picture").range_um,
+        Some([-5.0, 10.5])
+    );
+    assert!(
+        parsed("split_mm = 1")
+            .expect("a capture")
+            .0
+            .compare
+            .is_none()
+    );
+    for (relief, words) in [
+        ("compare = \"none.glb\"", "none.glb"),
+        (
+            "compare = \"none.png\", compare_range_um = [0, 1]",
+            "none.png",
+        ),
+        ("compare = \"torn.glb\"", "torn.glb"),
+        ("compare = \"r0.png\"", "compare_range_um = [black, white]"),
+        (
+            "compare = \"r0.png\", compare_range_um = [10, 10]",
+            "higher",
+        ),
+        (
+            "compare = \"shape.glb\", compare_range_um = [0, 10]",
+            "in mm",
+        ),
+        ("compare_range_um = [0, 10]", "compare"),
+    ] {
+        let told = told(relief);
+        assert!(told.contains(words), "{relief}: {told}");
+    }
 }

@@ -208,7 +208,7 @@ fn two_at_once_do_not_meet() {
 fn a_full_disk_is_told_and_nothing_is_half_written() {
     let folder = folder();
     let path = folder.path().join("map.png");
-    let full = |_: &mut io::BufWriter<&File>| Err(io::ErrorKind::StorageFull.into());
+    let full = |_: &mut io::BufWriter<encode::Kept<'_>>| Err(io::ErrorKind::StorageFull.into());
     let error = encode::write_whole(&path, full).expect_err("a full disk");
     assert!(matches!(error, MapError::Write { .. }));
     let told = error.to_string();
