@@ -15,8 +15,14 @@ mod photographs;
 
 #[path = "prepare/relief.rs"]
 mod relief;
+#[path = "prepare/shown.rs"]
+mod shown;
+#[path = "prepare/sitting.rs"]
+mod sitting;
 #[path = "prepare/stereo.rs"]
 mod stereo;
+#[path = "prepare/walked.rs"]
+mod walked;
 
 /// A folder that lives as long as the test.
 fn folder() -> tempfile::TempDir {

@@ -5,6 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use rayon::prelude::*;
+
 use super::{
     capture::{Capture, Light, Robustness, Shots},
     colour::{
@@ -18,14 +20,16 @@ use super::{
     relief::{
         compare::{range, remove_plane},
         filter::{Split, split},
-        integrate::{Perimeter, Slopes, integrate},
+        integrate::{Slopes, integrate_free},
     },
     report,
-    stereo::{Gain, Response, Rig, Rows, Solver, Standing},
-    write::{self, SideFiles, SideText},
+    stereo::{
+        Gain, Response, Rig, Rows, Solver, Standing,
+        left_out::{LeftOut, Relit},
+    },
+    write::{self, SideFiles, SideText, SrgbCodes},
 };
 use crate::{
-    colour::srgb_encode,
     manifest::{Exhibit, Faults, SideName},
     maps::MapError,
 };
@@ -100,6 +104,9 @@ pub struct SideReport {
     pub residual: [f64; 2],
     /// The share of places at which a photograph was doubted.
     pub doubted: f64,
+    /// How well photographs that were left out of the fit are computed from the others; `None`
+    /// with three lamps.
+    pub relit: Option<Relit>,
     /// The factor that albedo was multiplied with where nothing says how bright the light was.
     pub assumed_exposure: Option<f64>,
     /// Lowest and highest place of the shape at large in µm, its mean plane taken out.
@@ -242,6 +249,7 @@ fn prepare_side(
     let mut normals: Vec<[f32; 3]> = Vec::with_capacity(count);
     let mut albedo: [Vec<f32>; 3] = [0, 1, 2].map(|_| Vec::with_capacity(count));
     let mut residuals = Histogram::default();
+    let mut left_out = LeftOut::new(&solver, size[1]);
     let mut doubted = 0;
     let ambient = shots.ambient.as_deref();
     let mut stack = Stack::open(
@@ -252,19 +260,22 @@ fn prepare_side(
         scratch,
     )?;
     while let Some(mut band) = stack.next()? {
-        for (planes, field) in band.planes.iter_mut().zip(&fields) {
+        let photographs = band.planes.par_iter_mut().zip(&fields);
+        photographs.for_each(|(planes, field)| {
             let [r, g, b] = planes;
             for row in 0..band.rows {
                 let range = row * band.width..(row + 1) * band.width;
                 let planes = [&mut r[range.clone()], &mut g[range.clone()], &mut b[range]];
                 field.divide(band.top + row, planes);
             }
-        }
-        let mut solved = solver.solve(Rows {
+        });
+        let rows = Rows {
             planes: &band.planes,
             width: band.width,
             top: band.top,
-        });
+        };
+        left_out.add(rows);
+        let mut solved = solver.solve(rows);
         if let Some(correction) = correction {
             let [r, g, b] = &mut solved.albedo;
             correction.apply_planes([r, g, b]);
@@ -279,6 +290,7 @@ fn prepare_side(
             "solving",
             0.1 + 0.5 * (band.top + band.rows) as f64 / size[1] as f64,
         );
+        stack.recycle(band);
     }
     let measured = matches!(capture.lamps.light, Light::FlatField { .. }) || correction.is_some();
     let assumed_exposure = (!measured).then(|| exposure(&albedo[1]));
@@ -286,11 +298,15 @@ fn prepare_side(
     drop(albedo);
     tell("writing maps", 0.6);
     let maps = SideFiles::new(side, size, capture, scratch)?;
-    maps.albedo(&encoded)?;
-    drop(encoded);
-    tell("relief", 0.7);
+    tell("relief", 0.65);
     let sigma_px = (capture.relief.split_mm / capture.mm_per_px).max(0.5);
-    let Split { large, small } = split(normals, size[0], sigma_px, capture.relief.filter);
+    // A file is written by one processor: the others go on.
+    let (written, Split { large, small }) = rayon::join(
+        || maps.albedo(&encoded),
+        || split(normals, size[0], sigma_px, capture.relief.filter),
+    );
+    written?;
+    drop(encoded);
     let um_per_px = capture.mm_per_px * 1000.0;
     let extent = |heights: &[f64]| range(heights, [0.0, 1.0]).unwrap_or_default();
     let mut shape = heights(&large.vectors, large.width, um_per_px * large.step as f64);
@@ -303,12 +319,10 @@ fn prepare_side(
     let shape_um = extent(&shape);
     let surface = maps.shape(&shape, large.width)?;
     drop((shape, large));
-    maps.normal(&small)?;
     tell("relief", 0.8);
     let slopes = Slopes::of_normals(&small, size[0]);
-    drop(small);
-    let grain = heights_of(&slopes, um_per_px);
-    drop(slopes);
+    let (written, grain) = rayon::join(|| maps.normal(small), || heights_of(slopes, um_per_px));
+    written?;
     let grain_um = extent(&grain);
     tell("writing maps", 0.9);
     let text = maps.grain(&grain, surface)?;
@@ -320,6 +334,7 @@ fn prepare_side(
             Robustness::None => 0.0,
             _ => doubted as f64 / count.max(1) as f64,
         },
+        relit: left_out.relit(),
         assumed_exposure,
         shape_um,
         grain_um,
@@ -329,13 +344,14 @@ fn prepare_side(
 
 /// Heights in µm of unit normals, their mean plane taken out.
 fn heights(normals: &[[f32; 3]], width: usize, um_per_px: f64) -> Vec<f64> {
-    heights_of(&Slopes::of_normals(normals, width), um_per_px)
+    heights_of(Slopes::of_normals(normals, width), um_per_px)
 }
 
-fn heights_of(slopes: &Slopes, um_per_px: f64) -> Vec<f64> {
-    let mut heights = integrate(slopes, Perimeter::Free);
-    remove_plane(&mut heights, slopes.width);
-    heights.iter_mut().for_each(|h| *h *= um_per_px);
+fn heights_of(slopes: Slopes, um_per_px: f64) -> Vec<f64> {
+    let width = slopes.width;
+    let mut heights = integrate_free(slopes);
+    remove_plane(&mut heights, width);
+    heights.par_iter_mut().for_each(|h| *h *= um_per_px);
     heights
 }
 
@@ -357,12 +373,11 @@ fn exposure(green: &[f32]) -> f64 {
 }
 
 fn encoded(albedo: &[Vec<f32>; 3], factor: f64) -> Vec<[u16; 3]> {
-    use rayon::prelude::*;
-    let encode = |v: f32| (srgb_encode(f64::from(v) * factor).clamp(0.0, 1.0) * 65535.0).round();
+    let codes = SrgbCodes::new();
+    let factor = factor as f32;
     (0..albedo[0].len())
         .into_par_iter()
-        // Casts saturate.
-        .map(|i| [0, 1, 2].map(|c| encode(albedo[c][i]) as u16))
+        .map(|i| [0, 1, 2].map(|c| codes.of(albedo[c][i] * factor)))
         .collect()
 }
 
