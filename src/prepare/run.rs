@@ -321,7 +321,10 @@ fn prepare_side(
     drop((shape, large));
     tell("relief", 0.8);
     let slopes = Slopes::of_normals(&small, size[0]);
-    let (written, grain) = rayon::join(|| maps.normal(small), || heights_of(slopes, um_per_px));
+    let encoded = write::normal_codes(&small);
+    // Before heights take their memory.
+    drop(small);
+    let (written, grain) = rayon::join(|| maps.normal(&encoded), || heights_of(slopes, um_per_px));
     written?;
     let grain_um = extent(&grain);
     tell("writing maps", 0.9);

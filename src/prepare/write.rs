@@ -96,22 +96,11 @@ impl<'s> SideFiles<'s> {
         self.preview("albedo", self.size[0], &at, albedo.len())
     }
 
-    /// Writes unit normals of grain and strokes.
-    pub fn normal(&self, normals: Vec<[f32; 3]>) -> Result<(), PrepareError> {
+    /// Writes unit normals of grain and strokes, as [`normal_codes`] has them.
+    pub fn normal(&self, encoded: &[[u16; 3]]) -> Result<(), PrepareError> {
         let [w, h] = self.size.map(|v| v as u32);
-        let encoded: Vec<[u16; 3]> = normals
-            .par_iter()
-            // Casts cut, which half a step makes the nearest.
-            .map(|n| n.map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16))
-            .collect();
-        drop(normals);
-        save_png_rgb16(
-            &self.within.join("normal.png"),
-            w,
-            h,
-            &encoded,
-            Some(self.dpi),
-        )?;
+        let path = self.within.join("normal.png");
+        save_png_rgb16(&path, w, h, encoded, Some(self.dpi))?;
         let at = |i: usize| encoded[i].map(|v| (v >> 8) as u8);
         self.preview("normal", self.size[0], &at, encoded.len())
     }
@@ -157,6 +146,13 @@ impl<'s> SideFiles<'s> {
             size: self.size,
         })
     }
+}
+
+/// Unit normals → codes of 16 bits.
+pub(super) fn normal_codes(normals: &[[f32; 3]]) -> Vec<[u16; 3]> {
+    // Casts cut, which half a step makes the nearest.
+    let code = |v: f32| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16;
+    normals.par_iter().map(|n| n.map(code)).collect()
 }
 
 /// Linear light → codes of 16 bits, sRGB-encoded: straight lines between values of

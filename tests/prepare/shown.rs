@@ -116,10 +116,11 @@ fn mean(values: &[f64]) -> f64 {
 const SIZE: [usize; 2] = [48, 32];
 /// Where the pale ink meets the dark one, and a wash: left and top in pixels of the maps.
 const CORNER: [usize; 2] = [500, 400];
-/// Paths of each pixel: of photographs, of the original as it is shown, and of what was prepared.
+/// Paths of each pixel: of photographs, of the original as it is shown, and of what was prepared. The
+/// last ones' chance is a part of what is measured: ΔE00 is .15 less with four times as many as 384.
 const PHOTOGRAPHED: u64 = 1024;
 const ORIGINAL: u64 = 2048;
-const PREPARED: u64 = 384;
+const PREPARED: u64 = 768;
 const FIXTURE: &str = "valley.png";
 
 /// Under which the sheet is photographed.

@@ -73,7 +73,8 @@ impl LeftOut {
         if self.others.is_empty() || width == 0 {
             return;
         }
-        let wanted = |y: &usize| (rows.top + y) % self.step == self.step / 2;
+        let step = self.step;
+        let wanted = |y: &usize| (rows.top + y) % step == step / 2;
         for y in (0..count / width).filter(wanted) {
             let range = y * width..(y + 1) * width;
             let row: Vec<[Vec<f32>; 3]> = rows
