@@ -32,12 +32,18 @@ mod photographs;
 mod relief;
 #[path = "prepare/ruler.rs"]
 mod ruler;
+#[path = "prepare/shown.rs"]
+mod shown;
+#[path = "prepare/sitting.rs"]
+mod sitting;
 #[path = "prepare/stereo.rs"]
 mod stereo;
 #[path = "prepare/transmission.rs"]
 mod transmission;
 #[path = "prepare/verso.rs"]
 mod verso;
+#[path = "prepare/walked.rs"]
+mod walked;
 
 /// A folder that lives as long as the test.
 fn folder() -> tempfile::TempDir {

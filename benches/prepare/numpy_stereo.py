@@ -1,16 +1,16 @@
 """The least squares of `recto::prepare::stereo` as one writes it in NumPy, for comparison.
 
-    python benches/prepare/numpy_stereo.py [WIDTH HEIGHT LAMPS]
+    python benches/prepare/numpy_stereo.py WIDTH HEIGHT LAMPS
 
-prints the best of three runs, in s, of the solve (normals and albedo in float32 from photographs in memory,
-no response, no robustness), after a warm-up.
+solves once for each line on its standard input, and prints how long that took in s: normals and albedo in
+float32 from photographs in memory, no response, no robustness.
 """
 import sys
 import time
 
 import numpy as np
 
-width, height, lamps = (int(v) for v in sys.argv[1:4]) if len(sys.argv) > 3 else (6000, 4000, 4)
+width, height, lamps = (int(v) for v in sys.argv[1:4])
 azimuth = np.arange(lamps) * 2 * np.pi / lamps
 elevation = np.pi / 4
 l = np.stack([np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation),
@@ -30,10 +30,7 @@ def solve():
     return normal, albedo
 
 
-solve()
-times = []
-for _ in range(3):
+for _ in sys.stdin:
     start = time.perf_counter()
     solve()
-    times.append(time.perf_counter() - start)
-print(f"{min(times):.3f}")
+    print(f"{time.perf_counter() - start:.3f}", flush=True)

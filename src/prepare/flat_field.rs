@@ -74,6 +74,17 @@ impl FlatField {
         let side = longer.div_ceil(CELLS).max(LEAST_PX);
         let cells = size.map(|pixels| (pixels / side).max(1));
         let step = [0, 1].map(|i| size[i] as f64 / cells[i] as f64);
+        // The first column whose middle lies in each cell, and the end.
+        let first = |cell: usize| ((cell as f64 * step[0] - 0.5).ceil() as usize).min(size[0]);
+        let edges: Vec<usize> = (0..=cells[0])
+            .map(|cell| {
+                if cell == cells[0] {
+                    size[0]
+                } else {
+                    first(cell)
+                }
+            })
+            .collect();
         let mut sums = vec![[0.0f64; 4]; cells[0] * cells[1]];
         let mut clipped = 0u64;
         let mut y = 0;
@@ -81,19 +92,23 @@ impl FlatField {
             for row in 0..band.rows {
                 let cell_y = (((y as f64 + 0.5) / step[1]) as usize).min(cells[1] - 1);
                 let planes = band.row(0, row);
-                for x in 0..size[0] {
-                    let cell_x = (((x as f64 + 0.5) / step[0]) as usize).min(cells[0] - 1);
-                    let sum = &mut sums[cell_y * cells[0] + cell_x];
-                    let mut over = false;
-                    for (sum, plane) in sum.iter_mut().zip(planes) {
-                        *sum += f64::from(plane[x]);
-                        over |= plane[x] >= CLIPPED;
+                for (cell, edge) in edges.windows(2).enumerate() {
+                    let sum = &mut sums[cell_y * cells[0] + cell];
+                    let [r, g, b] = planes.map(|plane| &plane[edge[0]..edge[1]]);
+                    for (sum, plane) in sum.iter_mut().zip([r, g, b]) {
+                        // As photographs have 16 bits, sums of a cell's row are exact enough.
+                        *sum += f64::from(plane.iter().sum::<f32>());
                     }
-                    sum[3] += 1.0;
-                    clipped += u64::from(over);
+                    sum[3] += r.len() as f64;
+                    let over = r.iter().zip(g).zip(b).filter(|((r, g), b)| {
+                        let brightest = r.max(**g).max(**b);
+                        brightest >= CLIPPED
+                    });
+                    clipped += over.count() as u64;
                 }
                 y += 1;
             }
+            stack.recycle(band);
         }
         let share = clipped as f64 / (size[0] * size[1]) as f64;
         if share > CLIPPED_SHARE && !stack.is_float() {

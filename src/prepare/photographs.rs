@@ -33,6 +33,8 @@ pub struct Stack {
     /// Rows of the crop that have been read.
     done: usize,
     band_rows: usize,
+    /// Planes of bands that are done with: memory that is given back has to be cleared again.
+    spare: Vec<[Vec<f32>; 3]>,
 }
 
 /// Rows of all photographs of a stack.
@@ -58,14 +60,16 @@ impl Band {
 impl Band {
     /// Divides each photograph by its lamp's light; leaves them as they are without `fields`.
     pub fn divide(&mut self, fields: &[FlatField]) {
-        for (planes, field) in self.planes.iter_mut().zip(fields) {
+        let (rows, width, top) = (self.rows, self.width, self.top);
+        let photographs = self.planes.par_iter_mut().zip(fields);
+        photographs.for_each(|(planes, field)| {
             let [r, g, b] = planes;
-            for row in 0..self.rows {
-                let range = row * self.width..(row + 1) * self.width;
+            for row in 0..rows {
+                let range = row * width..(row + 1) * width;
                 let planes = [&mut r[range.clone()], &mut g[range.clone()], &mut b[range]];
-                field.divide(self.top + row, planes);
+                field.divide(top + row, planes);
             }
-        }
+        });
     }
 }
 
@@ -106,6 +110,7 @@ impl Stack {
             ambient,
             crop,
             done: 0,
+            spare: Vec::new(),
             band_rows: (BAND_BYTES / bytes).clamp(1, 512),
         };
         stack.skip(crop.top as usize)?;
@@ -131,6 +136,11 @@ impl Stack {
         Ok(())
     }
 
+    /// Takes back a band that is done with, for its memory.
+    pub fn recycle(&mut self, band: Band) {
+        self.spare = band.planes;
+    }
+
     /// The next band; `None` at the lower edge.
     ///
     /// # Errors
@@ -145,9 +155,14 @@ impl Stack {
             return Ok(None);
         }
         let crop = self.crop;
-        let read = |reader: &mut ColourRows| -> Result<[Vec<f32>; 3], MapError> {
+        let read = |reader: &mut ColourRows,
+                    spare: Option<[Vec<f32>; 3]>|
+         -> Result<[Vec<f32>; 3], MapError> {
             let full = reader.header().size[0] as usize;
-            let mut planes = [0, 1, 2].map(|_| vec![0.0; full * rows]);
+            let mut planes = spare.unwrap_or_default();
+            for plane in &mut planes {
+                plane.resize(full * rows, 0.0);
+            }
             reader.read(planes.each_mut().map(Vec::as_mut_slice))?;
             if crop.width() < full {
                 for plane in &mut planes {
@@ -160,9 +175,17 @@ impl Stack {
             }
             Ok(planes)
         };
-        let planes: Result<Vec<_>, MapError> = self.readers.par_iter_mut().map(read).collect();
+        let mut spare: Vec<_> = self.spare.drain(..).map(Some).collect();
+        spare.resize_with(self.readers.len(), || None);
+        let planes: Result<Vec<_>, MapError> = self
+            .readers
+            .par_iter_mut()
+            .zip(spare)
+            .map(|(reader, spare)| read(reader, spare))
+            .collect();
         let mut planes = planes?;
-        if let Some(ambient) = self.ambient.as_mut().map(read).transpose()? {
+        let ambient = self.ambient.as_mut().map(|reader| read(reader, None));
+        if let Some(ambient) = ambient.transpose()? {
             for photograph in &mut planes {
                 for (plane, dark) in photograph.iter_mut().zip(&ambient) {
                     for (value, dark) in plane.iter_mut().zip(dark) {

@@ -137,11 +137,21 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
             _ => &capture.recto,
         };
         let [width, height] = side.size;
+        let relit = side.relit.map_or_else(String::new, |relit| {
+            format!(
+                "<tr><td>A photograph left out of the fit and computed from the others is off by, root \
+                 mean square of {}<td>{:.1} %<tr><td>The mean of its two neighbours would be off by\
+                 <td>{:.1} %",
+                relit.photographs,
+                relit.computed * 100.0,
+                relit.neighbours * 100.0,
+            )
+        });
         let _ = write!(
             out,
             "<h2>{name}</h2><table><tr><td>Size<td>{width} × {height} pixels\
              <tr><td>What the photographs leave over, median and 95 %<td>{:.1} %, {:.1} %\
-             <tr><td>Places at which a photograph was doubted<td>{:.1} %\
+             <tr><td>Places at which a photograph was doubted<td>{:.1} %{relit}\
              {}<tr><td>Shape at large<td>{:.0} … {:.0} µm<tr><td>Grain and strokes<td>{:.1} … {:.1} \
              µm</table>",
             side.residual[0] * 100.0,

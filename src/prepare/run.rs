@@ -5,6 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use rayon::prelude::*;
+
 use super::{
     capture::{Capture, Circle, Light, Robustness, Shots},
     colour::{
@@ -20,18 +22,20 @@ use super::{
     relief::{
         compare::{Comparison, range, remove_plane},
         filter::{Split, split},
-        integrate::{Perimeter, Slopes, integrate},
+        integrate::{Slopes, integrate_free},
         surface,
     },
     report,
     stage::Stage,
-    stereo::{Gain, Response, Rig, Rows, Solver, Standing},
+    stereo::{
+        Gain, Response, Rig, Rows, Solver, Standing,
+        left_out::{LeftOut, Relit},
+    },
     transmission::TransmissionError,
     verso,
-    write::{self, SideFiles, SideText},
+    write::{self, SideFiles, SideText, SrgbCodes},
 };
 use crate::{
-    colour::srgb_encode,
     manifest::{Exhibit, Faults, SideName},
     maps::{MapError, room},
 };
@@ -128,6 +132,9 @@ pub struct SideReport {
     pub residual: [f64; 2],
     /// The share of places at which a photograph was doubted.
     pub doubted: f64,
+    /// How well photographs that were left out of the fit are computed from the others; `None`
+    /// with three lamps.
+    pub relit: Option<Relit>,
     /// The factor that albedo was multiplied with where nothing says how bright the light was.
     pub assumed_exposure: Option<f64>,
     /// Lowest and highest place of the shape at large in µm, its mean plane taken out.
@@ -278,6 +285,7 @@ fn prepare_side(
     let mut normals: Vec<[f32; 3]> = Vec::with_capacity(count);
     let mut albedo: [Vec<f32>; 3] = [0, 1, 2].map(|_| Vec::with_capacity(count));
     let mut residuals = Histogram::default();
+    let mut left_out = LeftOut::new(&solver, size[1]);
     let mut doubted = 0;
     let mut gathering = Gathering::new(capture, side, shots);
     let ambient = shots.ambient.as_deref();
@@ -290,11 +298,13 @@ fn prepare_side(
     )?;
     while let Some(mut band) = stack.next()? {
         band.divide(&fields);
-        let mut solved = solver.solve(Rows {
+        let rows = Rows {
             planes: &band.planes,
             width: band.width,
             top: band.top,
-        });
+        };
+        left_out.add(rows);
+        let mut solved = solver.solve(rows);
         gathering.add(&band, &solved, rig);
         if let Some(correction) = correction {
             let [r, g, b] = &mut solved.albedo;
@@ -310,6 +320,7 @@ fn prepare_side(
             "solving",
             0.1 + 0.4 * (band.top + band.rows) as f64 / size[1] as f64,
         );
+        stack.recycle(band);
     }
     let measured = matches!(capture.lamps.light, Light::FlatField { .. }) || correction.is_some();
     let assumed_exposure = (!measured).then(|| exposure(&albedo[1]));
@@ -328,12 +339,15 @@ fn prepare_side(
         solver: &solver,
     };
     let matter = gathering.finish(&bench, &mut encoded, &mut normals, &maps, scratch)?;
-    tell("writing maps", 0.6);
-    maps.albedo(&encoded)?;
-    drop(encoded);
-    tell("relief", 0.7);
+    tell("relief", 0.65);
     let sigma_px = (capture.relief.split_mm / capture.mm_per_px).max(0.5);
-    let Split { large, small } = split(normals, size[0], sigma_px, capture.relief.filter);
+    // A file is written by one processor: the others go on.
+    let (written, Split { large, small }) = rayon::join(
+        || maps.albedo(&encoded),
+        || split(normals, size[0], sigma_px, capture.relief.filter),
+    );
+    written?;
+    drop(encoded);
     let um_per_px = capture.mm_per_px * 1000.0;
     let extent = |heights: &[f64]| range(heights, [0.0, 1.0]).unwrap_or_default();
     let mut shape = heights(&large.vectors, large.width, um_per_px * large.step as f64);
@@ -353,12 +367,13 @@ fn prepare_side(
     };
     let surface = maps.shape(&shape, large.width)?;
     drop((shape, large));
-    maps.normal(&small)?;
     tell("relief", 0.8);
     let slopes = Slopes::of_normals(&small, size[0]);
+    let encoded = write::normal_codes(&small);
+    // Before heights take their memory.
     drop(small);
-    let grain = heights_of(&slopes, um_per_px);
-    drop(slopes);
+    let (written, grain) = rayon::join(|| maps.normal(&encoded), || heights_of(slopes, um_per_px));
+    written?;
     let grain_um = extent(&grain);
     tell("writing maps", 0.9);
     let text = maps.grain(&grain, surface)?;
@@ -370,6 +385,7 @@ fn prepare_side(
             Robustness::None => 0.0,
             _ => doubted as f64 / count.max(1) as f64,
         },
+        relit: left_out.relit(),
         assumed_exposure,
         shape_um,
         grain_um,
@@ -381,13 +397,14 @@ fn prepare_side(
 
 /// Heights in µm of unit normals, their mean plane taken out.
 fn heights(normals: &[[f32; 3]], width: usize, um_per_px: f64) -> Vec<f64> {
-    heights_of(&Slopes::of_normals(normals, width), um_per_px)
+    heights_of(Slopes::of_normals(normals, width), um_per_px)
 }
 
-fn heights_of(slopes: &Slopes, um_per_px: f64) -> Vec<f64> {
-    let mut heights = integrate(slopes, Perimeter::Free);
-    remove_plane(&mut heights, slopes.width);
-    heights.iter_mut().for_each(|h| *h *= um_per_px);
+fn heights_of(slopes: Slopes, um_per_px: f64) -> Vec<f64> {
+    let width = slopes.width;
+    let mut heights = integrate_free(slopes);
+    remove_plane(&mut heights, width);
+    heights.par_iter_mut().for_each(|h| *h *= um_per_px);
     heights
 }
 
@@ -409,12 +426,11 @@ fn exposure(green: &[f32]) -> f64 {
 }
 
 fn encoded(albedo: &[Vec<f32>; 3], factor: f64) -> Vec<[u16; 3]> {
-    use rayon::prelude::*;
-    let encode = |v: f32| (srgb_encode(f64::from(v) * factor).clamp(0.0, 1.0) * 65535.0).round();
+    let codes = SrgbCodes::new();
+    let factor = factor as f32;
     (0..albedo[0].len())
         .into_par_iter()
-        // Casts saturate.
-        .map(|i| [0, 1, 2].map(|c| encode(albedo[c][i]) as u16))
+        .map(|i| [0, 1, 2].map(|c| codes.of(albedo[c][i] * factor)))
         .collect()
 }
 

@@ -21,6 +21,7 @@ use super::{
     verso::Place,
 };
 use crate::{
+    colour::srgb_encode,
     manifest::{MANIFEST, SideName, check_shape},
     maps::encode::{save_png_grey16, save_png_rgb16, write_whole},
 };
@@ -145,20 +146,11 @@ impl<'s> SideFiles<'s> {
         Ok(())
     }
 
-    /// Writes unit normals of grain and strokes.
-    pub fn normal(&self, normals: &[[f32; 3]]) -> Result<(), PrepareError> {
+    /// Writes unit normals of grain and strokes, as [`normal_codes`] has them.
+    pub fn normal(&self, encoded: &[[u16; 3]]) -> Result<(), PrepareError> {
         let [w, h] = self.size.map(|v| v as u32);
-        let encoded: Vec<[u16; 3]> = normals
-            .par_iter()
-            .map(|n| n.map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0).round() as u16))
-            .collect();
-        save_png_rgb16(
-            &self.within.join("normal.png"),
-            w,
-            h,
-            &encoded,
-            Some(self.dpi),
-        )?;
+        let path = self.within.join("normal.png");
+        save_png_rgb16(&path, w, h, encoded, Some(self.dpi))?;
         let at = |i: usize| encoded[i].map(|v| (v >> 8) as u8);
         self.preview("normal", self.size[0], &at, encoded.len())
     }
@@ -207,6 +199,58 @@ impl<'s> SideFiles<'s> {
     }
 }
 
+/// Unit normals → codes of 16 bits.
+pub(super) fn normal_codes(normals: &[[f32; 3]]) -> Vec<[u16; 3]> {
+    // Casts cut, which half a step makes the nearest.
+    let code = |v: f32| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16;
+    normals.par_iter().map(|n| n.map(code)).collect()
+}
+
+/// Linear light → codes of 16 bits, sRGB-encoded: straight lines between values of
+/// [`srgb_encode`], 256 in each octave, which are 0.03 of a code off at most.
+pub(super) struct SrgbCodes {
+    /// From [`Self::FROM`] on, up to 1.
+    table: Vec<f32>,
+}
+
+impl SrgbCodes {
+    /// Below, sRGB is a straight line.
+    const FROM: f32 = 1.0 / 512.0;
+    /// Of a float's mantissa, the bits within a piece.
+    const WITHIN: u32 = 15;
+
+    pub fn new() -> Self {
+        let (first, last) = (Self::piece(Self::FROM), Self::piece(1.0));
+        let code = |piece: u32| {
+            let linear = f32::from_bits(piece << Self::WITHIN);
+            (srgb_encode(f64::from(linear)) * 65535.0) as f32
+        };
+        Self {
+            table: (first..=last + 1).map(code).collect(),
+        }
+    }
+
+    fn piece(linear: f32) -> u32 {
+        linear.to_bits() >> Self::WITHIN
+    }
+
+    /// The nearest code; what is not a number is black.
+    pub fn of(&self, linear: f32) -> u16 {
+        let linear = linear.min(1.0);
+        if linear >= Self::FROM {
+            let piece = (Self::piece(linear) - Self::piece(Self::FROM)) as usize;
+            let within = linear.to_bits() & ((1 << Self::WITHIN) - 1);
+            let share = within as f32 / (1 << Self::WITHIN) as f32;
+            let (a, b) = (self.table[piece], self.table[piece + 1]);
+            (a + (b - a) * share + 0.5) as u16
+        } else if linear > 0.0 {
+            (srgb_encode(f64::from(linear)) * 65535.0 + 0.5) as u16
+        } else {
+            0
+        }
+    }
+}
+
 /// Heights as 16-bit values.
 struct Levels {
     values: Vec<u16>,
@@ -216,11 +260,13 @@ struct Levels {
 
 impl Levels {
     fn new(um: &[f64]) -> Self {
-        let fold = |f: fn(f64, f64) -> f64| um.iter().copied().fold(0.0, f);
+        let fold = |f: fn(f64, f64) -> f64| um.par_iter().copied().reduce(|| 0.0, f);
         // To a hundredth, as it is written, and never without extent.
         let low = (fold(f64::min) * 100.0).floor() / 100.0;
         let high = ((fold(f64::max) * 100.0).ceil() / 100.0).max(low + 0.01);
-        let value = |h: &f64| ((h - low) / (high - low) * 65535.0).round() as u16;
+        let scale = 65535.0 / (high - low);
+        // Casts cut, which half a step makes the nearest.
+        let value = |h: &f64| ((h - low) * scale + 0.5) as u16;
         Self {
             values: um.par_iter().map(value).collect(),
             range: [low, high],
@@ -278,4 +324,30 @@ pub(super) fn manifest(
         file.write_all(b"\n")
     })?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_the_nearest_to_a_tenth() {
+        let codes = SrgbCodes::new();
+        let mut linear = 1e-6f32;
+        while linear < 1.1 {
+            let exact = srgb_encode(f64::from(linear.min(1.0))) * 65535.0;
+            let off = (f64::from(codes.of(linear)) - exact).abs();
+            assert!(off < 0.6, "{linear}: {off}");
+            linear *= 1.0003;
+        }
+        for (linear, code) in [
+            (0.0, 0),
+            (-1.0, 0),
+            (f32::NAN, 0),
+            (1.0, 65535),
+            (f32::INFINITY, 65535),
+        ] {
+            assert_eq!(codes.of(linear), code, "{linear}");
+        }
+    }
 }

@@ -5,6 +5,8 @@
     reason = "several arrays run along one index, as their formulas do"
 )]
 
+use rayon::prelude::*;
+
 use crate::prepare::linear::solve_positive;
 
 /// Mean and standard deviation of a difference.
@@ -106,35 +108,57 @@ fn spread(values: impl Iterator<Item = f64>) -> Option<Spread> {
 pub fn remove_plane(heights: &mut [f64], width: usize) -> Option<[f64; 3]> {
     let height = heights.len().checked_div(width)?;
     let (middle_x, middle_y) = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
-    let place = |i: usize| {
-        [
-            1.0,
-            (i % width) as f64 - middle_x,
-            (i / width) as f64 - middle_y,
-        ]
+    // Of each row: how many are known, Σx, Σx², Σh and Σxh.
+    let sums = |row: &[f64]| {
+        let mut sums = [0.0; 5];
+        for (x, h) in row.iter().enumerate().filter(|(_, h)| h.is_finite()) {
+            let x = x as f64 - middle_x;
+            for (sum, value) in sums.iter_mut().zip([1.0, x, x * x, *h, x * h]) {
+                *sum += value;
+            }
+        }
+        sums
     };
+    let rows: Vec<[f64; 5]> = heights.par_chunks(width).map(sums).collect();
     let mut a = vec![vec![0.0; 3]; 3];
     let mut b = vec![0.0; 3];
-    for (i, value) in heights.iter().enumerate().filter(|(_, v)| v.is_finite()) {
-        let row = place(i);
-        for j in 0..3 {
-            for k in 0..3 {
-                a[j][k] += row[j] * row[k];
+    for (y, [count, x, x_2, h, x_h]) in rows.into_iter().enumerate() {
+        let y = y as f64 - middle_y;
+        let terms = [
+            [count, x, count * y],
+            [x, x_2, x * y],
+            [count * y, x * y, count * y * y],
+        ];
+        for (a, terms) in a.iter_mut().zip(terms) {
+            for (a, term) in a.iter_mut().zip(terms) {
+                *a += term;
             }
-            b[j] += row[j] * value;
+        }
+        for (b, term) in b.iter_mut().zip([h, x_h, h * y]) {
+            *b += term;
         }
     }
-    let plane = solve_positive(&a, &[b])?.pop()?;
-    for (i, value) in heights.iter_mut().enumerate() {
-        let row = place(i);
-        *value -= (0..3).map(|j| row[j] * plane[j]).sum::<f64>();
-    }
-    plane.try_into().ok()
+    let plane: [f64; 3] = solve_positive(&a, &[b])?.pop()?.try_into().ok()?;
+    let [middle, right, down] = plane;
+    let rows = heights.par_chunks_mut(width).enumerate();
+    rows.for_each(|(y, row)| {
+        let level = middle + down * (y as f64 - middle_y);
+        for (x, value) in row.iter_mut().enumerate() {
+            *value -= level + right * (x as f64 - middle_x);
+        }
+    });
+    Some(plane)
 }
 
 /// The range of heights between these shares of all places (such as 0.001 and 0.999, so that
 /// single pixels do not decide). `None` where there is none.
 pub fn range(heights: &[f64], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+    if low <= 0.0 && high >= 1.0 {
+        let finite = || heights.par_iter().copied().filter(|h| h.is_finite());
+        let least = finite().reduce(|| f64::INFINITY, f64::min);
+        let most = finite().reduce(|| f64::NEG_INFINITY, f64::max);
+        return (least <= most).then_some([least, most]);
+    }
     let mut sorted: Vec<f64> = heights.iter().copied().filter(|h| h.is_finite()).collect();
     let last = sorted.len().checked_sub(1)?;
     let mut at = |share: f64| {

@@ -58,8 +58,8 @@ impl Slopes {
         let slope = |along: f32, z: f32| (along / z.max(1e-6)).clamp(-limit, limit);
         Self {
             width,
-            right: normals.iter().map(|n| -slope(n[0], n[2])).collect(),
-            down: normals.iter().map(|n| slope(n[1], n[2])).collect(),
+            right: normals.par_iter().map(|n| -slope(n[0], n[2])).collect(),
+            down: normals.par_iter().map(|n| slope(n[1], n[2])).collect(),
         }
     }
 
@@ -88,7 +88,7 @@ pub fn integrate(slopes: &Slopes, perimeter: Perimeter) -> Vec<f64> {
     let (width, height) = (slopes.width, slopes.height());
     match perimeter {
         _ if width == 0 || height == 0 => Vec::new(),
-        Perimeter::Free => by_cosines(slopes),
+        Perimeter::Free => integrate_free(slopes.clone()),
         Perimeter::Anchored if width < 3 || height < 3 => vec![0.0; width * height],
         Perimeter::Anchored => {
             let right = divergence(slopes, None);
@@ -108,18 +108,24 @@ pub fn integrate(slopes: &Slopes, perimeter: Perimeter) -> Vec<f64> {
     }
 }
 
-/// The least squares of slopes, term by term.
-fn by_cosines(slopes: &Slopes) -> Vec<f64> {
+/// As [`integrate`] with a free perimeter, of slopes that are of no use afterwards: of a large sheet
+/// they take as much memory as its heights. They are the least squares, term by term.
+pub fn integrate_free(slopes: Slopes) -> Vec<f64> {
     let (width, height) = (slopes.width, slopes.height());
+    if width == 0 || height == 0 {
+        return Vec::new();
+    }
+    let Slopes { right, down, .. } = slopes;
     let mean = |v: &[f32]| v.iter().map(|v| f64::from(*v)).sum::<f64>() / v.len() as f64;
-    let (tilt_x, tilt_y) = (mean(&slopes.right), mean(&slopes.down));
+    let (tilt_x, tilt_y) = (mean(&right), mean(&down));
     let lines = |kind| [Line::new(kind, width), Line::new(kind, height)];
     let (cosine, slope) = (lines(Kind::Cosine), lines(Kind::Slope));
-    let without =
-        |v: &[f32], tilt: f64| -> Vec<f64> { v.par_iter().map(|v| f64::from(*v) - tilt).collect() };
-    let mut h = without(&slopes.right, tilt_x);
+    let without = |v: Vec<f32>, tilt: f64| -> Vec<f64> {
+        v.par_iter().map(|v| f64::from(*v) - tilt).collect()
+    };
+    let mut h = without(right, tilt_x);
     transform(&mut h, width, [&slope[0], &cosine[1]], false);
-    let mut down = without(&slopes.down, tilt_y);
+    let mut down = without(down, tilt_y);
     transform(&mut down, width, [&cosine[0], &slope[1]], false);
     let (across, along) = (cosine[0].frequencies(), cosine[1].frequencies());
     h.par_chunks_mut(width)

@@ -154,8 +154,7 @@ pub fn transform(picture: &mut [f64], width: usize, [across, down]: [&Line; 2], 
     let height = picture.len() / width;
     let mut turned = transposed(picture, width);
     along_rows(&mut turned, height, down, back);
-    let restored = transposed(&turned, height);
-    picture.copy_from_slice(&restored);
+    transpose_into(&turned, height, picture);
 }
 
 fn along_rows(picture: &mut [f64], width: usize, line: &Line, back: bool) {
@@ -173,10 +172,16 @@ fn along_rows(picture: &mut [f64], width: usize, line: &Line, back: bool) {
 
 /// A picture of `width` with rows and columns exchanged.
 pub(super) fn transposed<T: Copy + Default + Send + Sync>(picture: &[T], width: usize) -> Vec<T> {
+    let mut turned = vec![T::default(); picture.len()];
+    transpose_into(picture, width, &mut turned);
+    turned
+}
+
+/// As [`transposed`], into a picture of as many pixels.
+fn transpose_into<T: Copy + Send + Sync>(picture: &[T], width: usize, turned: &mut [T]) {
     /// Of what is exchanged at once, so that both sides stay in a cache.
     const TILE: usize = 32;
     let height = picture.len() / width;
-    let mut turned = vec![T::default(); picture.len()];
     turned
         .par_chunks_mut(height * TILE)
         .enumerate()
@@ -189,5 +194,4 @@ pub(super) fn transposed<T: Copy + Default + Send + Sync>(picture: &[T], width: 
                 }
             }
         });
-    turned
 }

@@ -8,6 +8,7 @@
 //! | least squares of many pixels at once | `block` |
 //! | shadows and highlights | `robust` |
 //! | photographs that were not taken | [`relight()`] |
+//! | how well they are computed, by those that were | [`left_out`] |
 //!
 //! Photographs come as linear planes, in bands of rows; a band is solved by all processors, row by
 //! row, in one pass over its values. Values are f32, as photographs have 16 bits at most; what is
@@ -19,6 +20,7 @@
 )]
 
 mod block;
+pub mod left_out;
 mod relight;
 pub mod response;
 pub mod rig;
@@ -356,7 +358,10 @@ impl Block {
             self.gleaming.fill([0.0; LANES]);
         }
         let mut g = solve(&self.plain);
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
+            // Half of a step: a narrow gleam turns the normal, which moves the gleam. Of nothing, the
+            // first guess is nearer.
+            let kept = if round == 0 && w.is_none() { 0.0 } else { 0.5 };
             let n = normals(&g);
             let leaving = Leaving::new(paper, &n);
             for i in 0..lamps.count() {
@@ -365,9 +370,8 @@ impl Block {
                 for lane in 0..LANES {
                     let grey = self.grey[i][lane];
                     let gleam = lamps.gain[i][lane] * mu[lane].max(0.0) * seen.gloss[lane];
-                    // Half of a step: a narrow gleam turns the normal, which moves the gleam.
                     let share = (gleam / grey.max(1e-6)).clamp(0.0, MOST_GLEAM);
-                    let share = 0.5 * (share + self.gleaming[i][lane]);
+                    let share = share + kept * (self.gleaming[i][lane] - share);
                     self.gleaming[i][lane] = share;
                     self.plain[i][lane] = grey * (1.0 - share) / seen.diffuse[lane].max(0.3);
                 }
