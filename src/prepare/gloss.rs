@@ -33,12 +33,12 @@ const KEPT_OF_SWATCH: usize = 1_500;
 /// Bytes that they may take.
 const KEPT_BYTES: usize = 96 << 20;
 /// Places that a fit takes, and the fewest that it is done with.
-const PLACES: usize = 160;
+const PLACES: usize = 120;
 const FEWEST: usize = 40;
 /// Roughnesses looked at first.
 const GRID: [f64; 9] = [0.1, 0.14, 0.2, 0.28, 0.38, 0.5, 0.64, 0.8, 1.0];
 /// Steps between the best of them and its neighbours.
-const GOLDEN: usize = 7;
+const GOLDEN: usize = 6;
 /// Steps of each place's own fit, first and once it starts from a roughness nearby.
 const STEPS: [usize; 2] = [5, 3];
 /// Noise of a photograph: of white, and of the value.
@@ -54,8 +54,12 @@ const STARTS: [f64; 3] = [1.0, 0.5, 0.0];
 const WIDEST: f64 = 0.25;
 /// Standard deviations of the bound that is told.
 const SIGMAS: f64 = 2.0;
-/// What a normal and an albedo move by for their derivatives.
+/// What slopes and the logarithm of an albedo move by for their derivatives.
 const STEP: f64 = 1e-4;
+/// Light from below the surface that is as good as none.
+const BLACK: f64 = 1e-4;
+/// The least of it that a fit starts from.
+const DARK: f64 = 3e-3;
 
 /// Photographs of places all over a side.
 #[derive(Clone, Debug)]
@@ -219,7 +223,7 @@ impl Amendment {
     }
 
     /// Of places before and after their fit. `None` where there are too few.
-    fn new(places: &[Place], found: &[[f64; 5]]) -> Option<Self> {
+    fn new(places: &[Place], found: &[DVec3]) -> Option<Self> {
         /// Of the mean square of the terms: where a class has one albedo, the constant is enough.
         const RIDGE: f64 = 1e-4;
         let mut factors = [[0.0; 3]; 3];
@@ -230,7 +234,7 @@ impl Amendment {
             let rows: Vec<Vec<f64>> = rows.map(|row| row.to_vec()).collect();
             let each = places.iter().zip(found);
             let off: Vec<f64> = each
-                .map(|(place, found)| found[2 + c] - place.albedo[c])
+                .map(|(place, found)| found[c] - place.albedo[c])
                 .collect();
             let mut weights = vec![1.0; rows.len()];
             // Places in shadow, and specks, are forgotten.
@@ -327,7 +331,7 @@ pub fn fit(
         },
         None => unknown(fit.residual()),
     };
-    (roughness, Amendment::new(places, &fit.found))
+    (roughness, Amendment::new(places, &fit.albedo()))
 }
 
 /// The least of the parabola around the place `i`, and within how much of it the sum rises by what
@@ -359,7 +363,8 @@ struct Fit<'f> {
     places: &'f [Place],
     /// Towards each lamp from each place, and what a perfect diffuser shows there.
     lamps: Vec<Vec<(DVec3, f64)>>,
-    /// Slopes of the normal, and albedo.
+    /// Slopes of the normal, and the logarithm of the albedo without what the surface itself adds:
+    /// so it never is below none, where nothing would change with it.
     found: Vec<[f64; 5]>,
     first: bool,
 }
@@ -373,13 +378,15 @@ impl<'f> Fit<'f> {
             };
             (0..rig.count()).map(lamp).collect()
         });
+        let spot = model.spot(medium);
+        let floor = spot.floor();
         let found = places.iter().map(|place| {
             let [p, q] = slopes(place.normal);
-            let [r, g, b] = place.albedo.to_array();
+            let [r, g, b] = (place.albedo - floor).to_array().map(|v| v.max(DARK).ln());
             [p, q, r, g, b]
         });
         Self {
-            spot: model.spot(medium),
+            spot,
             places,
             lamps: lamps.collect(),
             found: found.collect(),
@@ -415,6 +422,14 @@ impl<'f> Fit<'f> {
             )
             .collect();
         sums.iter().sum()
+    }
+
+    /// The albedo of each place.
+    fn albedo(&self) -> Vec<DVec3> {
+        let floor = self.spot.floor();
+        let each = self.found.iter();
+        each.map(|[_, _, r, g, b]| DVec3::new(*r, *g, *b).exp() + floor)
+            .collect()
     }
 
     /// As [`Roughness::residual`], of the last roughness.
@@ -463,7 +478,8 @@ fn left_over(
 ) -> Vec<DVec3> {
     let [p, q, r, g, b] = *found;
     let normal = DVec3::new(p, q, 1.0).normalize();
-    spot.set_albedo(DVec3::new(r, g, b));
+    let below = DVec3::new(r, g, b).clamp(DVec3::splat(BLACK.ln()), DVec3::ZERO);
+    spot.set_albedo(below.exp() + spot.floor());
     let each = lamps.iter().zip(&place.shown);
     each.map(|((l, gain), shown)| spot.shown(normal, *l) * *gain - *shown)
         .collect()

@@ -17,7 +17,7 @@ use crate::optics::{
     study::Study,
     table::{InterfaceMean, InterfaceTable},
     through::{Seen, through_study, toned_paper},
-    tier::{Surface, Tier},
+    tier::{Surface, Tier, capture_floor},
 };
 
 /// A sheet whose bare paper is known, as the study tier shows it.
@@ -180,6 +180,17 @@ impl Spot<'_> {
             .specimen
             .reflected(Tier::Study, upright * l, upright * DVec3::Z, 1.0);
         f * (PI * mu)
+    }
+
+    /// What its surface itself adds to its albedo; nothing of grains, whose albedo holds it.
+    pub fn floor(&self) -> f64 {
+        let Specimen {
+            surface, interface, ..
+        } = &self.specimen;
+        match self.whole.particles > 0.0 {
+            true => 0.0,
+            false => capture_floor(surface, &interface.mean_at(surface.alpha)),
+        }
     }
 
     fn share(&self) -> DVec3 {

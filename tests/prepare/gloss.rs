@@ -12,7 +12,7 @@ use recto::{
     },
 };
 
-use super::made::medium;
+use super::made::{Lies, Media, PAPER, medium};
 
 /// Of a roughness.
 const OFF: f64 = 0.04;
@@ -92,6 +92,56 @@ fn roughness_is_found_again() {
         assert!(found.residual < 0.05, "{found:?}");
         assert!(amendment.is_some());
     }
+}
+
+/// Ink at all strengths, as the optics' own specimens show it, whose normals stereo has turned by
+/// ten degrees: its roughness, and its albedo.
+#[test]
+fn deep_ink_is_found_from_normals_that_are_wrong() {
+    let rig = rig([34.0, 58.0]);
+    let media = Media::new();
+    let model = Model::laid(DVec3::splat(PAPER)).expect("laid paper");
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(8);
+    let mut truth = Vec::new();
+    let places: Vec<Place> = (0..PLACES)
+        .map(|i| {
+            let mut between = |bound: f64| (2.0 * random.random::<f64>() - 1.0) * bound;
+            let lies = Lies::Ink(0.75 + between(0.3));
+            let slope = [between(0.15), between(0.15)];
+            let normal = DVec3::new(slope[0], slope[1], 1.0).normalize();
+            let at = DVec2::new(i as f64 + 0.5, 0.5);
+            let shown = (0..rig.count()).map(|k| {
+                let lit = rig.lamp(k, at);
+                let noise = DVec3::new(between(NOISE), between(NOISE), between(NOISE));
+                media.shown(lies, normal, lit.l) * lit.gain + 1.7 * noise
+            });
+            let shown = shown.collect();
+            truth.push(media.albedo(lies));
+            let turned = DVec3::new(slope[0] + between(0.2), slope[1] + between(0.2), 1.0);
+            Place {
+                at,
+                shown,
+                normal: turned.normalize(),
+                albedo: media.albedo(lies) + between(0.02),
+            }
+        })
+        .collect();
+    let name = medium("iron-gall-ink");
+    let (found, amendment) = fit(&model, Some(name), Some(name.medium()), &places, &rig);
+    let amendment = amendment.expect("an amendment");
+    let (mut before, mut after, mut bias) = (0.0, 0.0, 0.0);
+    for (place, truth) in places.iter().zip(&truth) {
+        before += (place.albedo.y - truth.y).abs() / PLACES as f64;
+        let amended = amendment.apply(place.albedo, place.normal).y;
+        after += (amended - truth.y).abs() / PLACES as f64;
+        bias += (amended - truth.y) / PLACES as f64;
+    }
+    eprintln!("{found:?} albedo off by {before:.5}, {after:.5}, on the whole {bias:.5}");
+    assert!(
+        found.within.is_some() && (found.alpha - 0.35).abs() < OFF,
+        "{found:?}"
+    );
+    assert!(bias.abs() < 0.002, "{bias}");
 }
 
 #[test]

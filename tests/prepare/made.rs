@@ -100,7 +100,7 @@ pub fn lies(x: usize, y: usize) -> Lies {
 }
 
 /// Slopes of the fibres and of what pen and brush left.
-fn normal(x: usize, y: usize) -> DVec3 {
+pub fn normal(x: usize, y: usize) -> DVec3 {
     let (u, v) = (x as f64, y as f64);
     let p = 0.10 * (u / 1.9 + 0.3 * v).sin() + 0.08 * (v / 2.7 - u / 5.1).cos();
     let q = 0.10 * (v / 2.1 + 0.2 * u).sin() + 0.07 * (u / 3.3 + v / 4.7).cos();
@@ -156,7 +156,7 @@ pub struct Media {
 }
 
 impl Media {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let paper = medium("laid");
         let chalk = medium("red-chalk").medium();
         let Matter::Particles(grains) = chalk.matter else {
@@ -183,7 +183,7 @@ impl Media {
 
     /// π times the radiance straight up of a place under light that a perfect diffuser which
     /// faces it shows as 1.
-    fn shown(&self, lies: Lies, normal: DVec3, l: DVec3) -> DVec3 {
+    pub fn shown(&self, lies: Lies, normal: DVec3, l: DVec3) -> DVec3 {
         let upright = DQuat::from_rotation_arc(normal, DVec3::Z);
         let of = |specimen: &Specimen| {
             specimen.reflected(Tier::Study, upright * l, upright * DVec3::Z, 1.0)
@@ -203,6 +203,19 @@ impl Media {
             Lies::Ink(share) => Self::of(&self.inks, share).depth(),
             Lies::Wash(share) => Self::of(&self.washes, share).depth(),
             _ => DVec3::ZERO,
+        }
+    }
+
+    /// What a place photographs as at 45°/0°.
+    pub fn albedo(&self, lies: Lies) -> DVec3 {
+        match lies {
+            Lies::Paper => self.paper.surface.albedo,
+            Lies::Ink(share) => Self::of(&self.inks, share).surface.albedo,
+            Lies::Wash(share) => Self::of(&self.washes, share).surface.albedo,
+            Lies::Chalk(covered) => {
+                let paper = self.paper.surface.albedo;
+                paper.lerp(self.chalk.surface.albedo, covered)
+            }
         }
     }
 

@@ -2,7 +2,9 @@
 
 use std::{path::PathBuf, sync::OnceLock};
 
+use glam::DVec3;
 use recto::{
+    colour::{delta_e00, lab_from_linear},
     manifest::Exhibit,
     maps::{self, ColourEncoding},
     optics::medium::{Matter, MediumId},
@@ -193,6 +195,49 @@ fn ink_is_as_deep_as_it_lies() {
             (ink.strong[1] / film.depth[1] - 1.05).abs() < 0.15,
             "{ink:?}"
         );
+    }
+}
+
+/// Mean ΔE00 of albedo and mean angle of normals in degrees, of each class.
+const OF_CLASS: [[f64; 2]; 4] = [[0.5, 1.0], [2.0, 4.0], [1.0, 1.5], [1.0, 1.5]];
+
+#[test]
+fn glossy_ink_bends_neither_albedo_nor_normals() {
+    let (stand, out, _) = prepared();
+    let mut albedo = Vec::new();
+    maps::for_each_colour_row(
+        &out.join("maps/recto/albedo.png"),
+        ColourEncoding::Srgb,
+        |_, row| albedo.extend_from_slice(row),
+    )
+    .expect("a picture");
+    let normals = pixels(&out.join("maps/recto/normal.png"));
+    let mut sums = [[0.0; 5]; 4];
+    for (i, (albedo, normal)) in albedo.iter().zip(&normals).enumerate() {
+        let (x, y) = (i % WIDTH, i / WIDTH);
+        let lies = lies(x, y);
+        let truth = stand.media.albedo(lies);
+        let found = DVec3::from([0, 1, 2].map(|c| f64::from(albedo[c])));
+        let lab = |rgb: DVec3| lab_from_linear(rgb.to_array());
+        let n = DVec3::from([0, 1, 2].map(|c| f64::from(normal[c]) * 2.0 - 1.0)).normalize();
+        let sum = &mut sums[lies.class()];
+        sum[0] += delta_e00(lab(found), lab(truth));
+        sum[1] += n.angle_between(made::normal(x, y)).to_degrees();
+        sum[2] += found.y;
+        sum[3] += truth.y;
+        sum[4] += 1.0;
+    }
+    for (class, sum) in sums.iter().enumerate() {
+        let [delta_e, angle, found, truth, _] = sum.map(|v| v / sum[4]);
+        eprintln!(
+            "{}: ΔE00 {delta_e:.3}, {angle:.3}°, {found:.4} for {truth:.4}",
+            MEDIA[class]
+        );
+    }
+    for (class, sum) in sums.iter().enumerate() {
+        let [delta_e, angle, ..] = sum.map(|v| v / sum[4]);
+        let [most, widest] = OF_CLASS[class];
+        assert!(delta_e < most && angle < widest, "{}", MEDIA[class]);
     }
 }
 
