@@ -199,10 +199,12 @@ impl Network {
                 }
             }
         }
+        // Only one half was added up.
         for i in 0..count {
-            gram[i][i] += decay;
-            for j in 0..i {
-                gram[j][i] = gram[i][j];
+            let (above, rest) = gram.split_at_mut(i);
+            rest[0][i] += decay;
+            for (row, value) in above.iter_mut().zip(&rest[0]) {
+                row[i] = *value;
             }
         }
         (gram, gradient)
@@ -270,14 +272,17 @@ mod tests {
         let mut row = vec![0.0; network.weights.len()];
         for k in 0..3 {
             network.slopes(&network.pass(features), k, &mut row);
-            for i in 0..row.len() {
+            for (i, derivative) in row.iter().enumerate() {
                 let moved = |by: f64| {
                     let mut moved = network.clone();
                     moved.weights[i] += by;
                     moved.pass(features).y[k]
                 };
                 let slope = (moved(STEP) - moved(-STEP)) / (2.0 * STEP);
-                assert!((slope - row[i]).abs() < 1e-8, "{k} {i}: {slope} {}", row[i]);
+                assert!(
+                    (slope - derivative).abs() < 1e-8,
+                    "{k} {i}: {slope} {derivative}"
+                );
             }
         }
     }
