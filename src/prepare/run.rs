@@ -322,6 +322,8 @@ fn prepare_side(
         );
         stack.recycle(band);
     }
+    // Its buffers are as large as a map of its own.
+    drop(stack);
     let measured = matches!(capture.lamps.light, Light::FlatField { .. }) || correction.is_some();
     let assumed_exposure = (!measured).then(|| exposure(&albedo[1]));
     let mut encoded = encoded(&albedo, assumed_exposure.unwrap_or(1.0));
