@@ -236,8 +236,9 @@ impl SrgbCodes {
 
     /// The nearest code; what is not a number is black.
     pub fn of(&self, linear: f32) -> u16 {
-        let linear = linear.min(1.0);
-        if linear >= Self::FROM {
+        if linear >= 1.0 {
+            u16::MAX
+        } else if linear >= Self::FROM {
             let piece = (Self::piece(linear) - Self::piece(Self::FROM)) as usize;
             let within = linear.to_bits() & ((1 << Self::WITHIN) - 1);
             let share = within as f32 / (1 << Self::WITHIN) as f32;
