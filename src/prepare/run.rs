@@ -338,7 +338,6 @@ fn prepare_side(
         correction,
         exposure: assumed_exposure.unwrap_or(1.0),
         fields: &fields,
-        solver: &solver,
     };
     let matter = gathering.finish(&bench, &mut encoded, &mut normals, &maps, scratch)?;
     tell("relief", 0.65);

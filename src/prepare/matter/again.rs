@@ -1,80 +1,98 @@
 //! Places whose surface is not paper's, solved again: stereo took every surface for paper's, and
-//! ink's narrower gleam turned its normals towards the lamps. Now that its roughness is known, it
-//! is divided out with that.
+//! ink's narrower gleam, of which most of its light is, turned its normals towards the lamps. Now
+//! that its roughness is known, the study tier itself is fitted to each of its places.
 
 use std::path::Path;
 
-use super::Bench;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::{Bench, encoded, linear};
 use crate::{
-    colour::srgb_encode,
+    optics::medium::Medium,
     prepare::{
         PrepareError,
+        gloss::{Place, Settler},
+        model::Model,
         photographs::Stack,
-        stereo::{Paper, Response, Rows, Solver},
     },
 };
 
-/// A class and what light does at its surface.
-pub struct Glossy {
-    pub class: u8,
-    pub surface: Paper,
+/// Maps of a side.
+pub struct Maps<'m> {
+    /// sRGB-encoded.
+    pub albedo: &'m mut [[u16; 3]],
+    pub normals: &'m mut [[f32; 3]],
 }
 
-/// Reads the photographs once more, and replaces the normal and the sRGB-encoded albedo of each
-/// place that is of one of these classes.
+/// Reads the photographs once more, and replaces normal and albedo of each place that is of a
+/// class with a medium in `glossy`.
 ///
 /// # Errors
 /// Of the first photograph that cannot be read now.
 pub fn solve(
     bench: &Bench<'_>,
     scratch: &Path,
-    glossy: &[Glossy],
+    model: &Model,
+    glossy: &[Option<Medium>],
     classes: &[u8],
-    albedo: &mut [[u16; 3]],
-    normals: &mut [[f32; 3]],
+    maps: Maps<'_>,
 ) -> Result<(), PrepareError> {
-    if glossy.is_empty() {
+    if glossy.iter().all(Option::is_none) {
         return Ok(());
     }
+    let settlers: Vec<Option<Settler<'_>>> = glossy
+        .iter()
+        .map(|medium| medium.as_ref().map(|medium| Settler::new(model, medium)))
+        .collect();
     let shots = bench.shots;
     let ambient = shots.ambient.as_deref();
     let encoding = bench.capture.encoding;
     let mut stack = Stack::open(&shots.photographs, ambient, encoding, shots.crop, scratch)?;
     while let Some(mut band) = stack.next()? {
         let start = band.top * band.width;
-        let end = start + band.rows * band.width;
-        let of_band = &classes[start..end];
-        let here: Vec<&Glossy> = glossy
-            .iter()
-            .filter(|glossy| of_band.contains(&glossy.class))
-            .collect();
-        if here.is_empty() {
+        let range = start..start + band.rows * band.width;
+        let of_band = &classes[range.clone()];
+        let here = |class: &u8| {
+            settlers
+                .get(usize::from(*class))
+                .is_some_and(Option::is_some)
+        };
+        if !of_band.iter().any(here) {
             continue;
         }
         band.divide(bench.fields);
-        for Glossy { class, surface } in here {
-            let solver = Solver {
-                response: Response::Paper(surface.clone()),
-                ..bench.solver.clone()
-            };
-            let mut solved = solver.solve(Rows {
-                planes: &band.planes,
-                width: band.width,
-                top: band.top,
-            });
-            if let Some(correction) = bench.correction {
-                let [r, g, b] = &mut solved.albedo;
-                correction.apply_planes([r, g, b]);
-            }
-            for (i, _) in of_band.iter().enumerate().filter(|(_, of)| *of == class) {
-                normals[start + i] = solved.normal[i];
-                albedo[start + i] = [0, 1, 2].map(|c| {
-                    let linear = f64::from(solved.albedo[c][i]) * bench.exposure;
-                    // Casts saturate.
-                    (srgb_encode(linear).clamp(0.0, 1.0) * 65535.0).round() as u16
-                });
-            }
-        }
+        let (band, settlers) = (&band, &settlers);
+        let places = maps.albedo[range.clone()].par_iter_mut();
+        let places = places
+            .zip(&mut maps.normals[range])
+            .zip(of_band)
+            .enumerate();
+        places.for_each_init(
+            || settlers.clone(),
+            |settlers, (i, ((rgb, normal), class))| {
+                let settler = settlers
+                    .get_mut(usize::from(*class))
+                    .and_then(Option::as_mut);
+                let Some(settler) = settler else {
+                    return;
+                };
+                let (x, y) = (i % band.width, band.top + i / band.width);
+                let shown = band
+                    .planes
+                    .iter()
+                    .map(|planes| bench.colour(planes.each_ref().map(|plane| plane[i])));
+                let place = Place {
+                    at: DVec2::new(x as f64 + 0.5, y as f64 + 0.5),
+                    shown: shown.collect(),
+                    normal: DVec3::from(normal.map(f64::from)).normalize_or(DVec3::Z),
+                    albedo: linear(*rgb),
+                };
+                let (found, albedo) = settler.settle(&place, bench.rig);
+                *normal = found.as_vec3().into();
+                *rgb = encoded(albedo);
+            },
+        );
     }
     Ok(())
 }

@@ -35,7 +35,7 @@ use super::{
     },
     model::Model,
     photographs::Band,
-    stereo::{Paper, Rig, Solved, Solver},
+    stereo::{Rig, Solved},
     transmission::{self, Transmission},
     write::SideFiles,
 };
@@ -169,8 +169,10 @@ impl Gathering {
             told: materials.is_some(),
             size,
         };
-        let (_, media) = side.measure(&mut report, &names, false);
-        side.solve_again(&media, scratch)?;
+        let (model, media) = side.measure(&mut report, &names, false);
+        if let Some(model) = model {
+            side.solve_again(&model, &media, scratch)?;
+        }
         let (model, media) = side.measure(&mut report, &names, materials.is_some());
         drop(samples);
         let Some(model) = model else {
@@ -219,8 +221,18 @@ pub(super) struct Bench<'b> {
     /// What albedo was multiplied with.
     pub exposure: f64,
     pub fields: &'b [FlatField],
-    /// By which the photographs were solved.
-    pub solver: &'b Solver,
+}
+
+impl Bench<'_> {
+    /// A photograph's colour, its light divided out, as the albedo's.
+    fn colour(&self, rgb: [f32; 3]) -> DVec3 {
+        let rgb = rgb.map(f64::from);
+        let rgb = match self.correction {
+            Some(correction) => correction.apply(rgb),
+            None => rgb,
+        };
+        DVec3::from(rgb) * self.exposure
+    }
 }
 
 /// A side whose classes are known.
@@ -287,6 +299,7 @@ impl Sheet<'_, '_> {
     /// Solves films and body colours again whose surface differs from that of paper.
     fn solve_again(
         &mut self,
+        model: &Model,
         media: &[Option<Medium>],
         scratch: &Path,
     ) -> Result<(), PrepareError> {
@@ -295,26 +308,16 @@ impl Sheet<'_, '_> {
         let Some(paper) = Model::laid(DVec3::ONE).map(|model| model.paper()) else {
             return Ok(());
         };
-        let glossy = media.iter().enumerate().filter_map(|(class, medium)| {
-            let alpha = match medium.as_ref()?.matter {
-                Matter::Film(film) => film.roughness,
-                Matter::Body(body) => body.roughness,
-                _ => return None,
-            };
-            ((alpha - paper.roughness).abs() > ALIKE).then(|| again::Glossy {
-                class: class as u8,
-                surface: Paper::new(alpha, paper.index, 1.0),
-            })
+        let glossy = media.iter().map(|medium| {
+            let of = medium.filter(|m| matches!(m.matter, Matter::Film(_) | Matter::Body(_)));
+            of.filter(|medium| (medium.roughness() - paper.roughness).abs() > ALIKE)
         });
-        let glossy: Vec<again::Glossy> = glossy.collect();
-        again::solve(
-            self.bench,
-            scratch,
-            &glossy,
-            self.classes,
-            self.albedo,
-            self.normals,
-        )
+        let glossy: Vec<Option<Medium>> = glossy.collect();
+        let maps = again::Maps {
+            albedo: self.albedo,
+            normals: self.normals,
+        };
+        again::solve(self.bench, scratch, model, &glossy, self.classes, maps)
     }
 
     fn fit(
@@ -324,25 +327,14 @@ impl Sheet<'_, '_> {
         medium: Option<&Medium>,
         class: usize,
     ) -> (Roughness, Option<Amendment>) {
-        let Bench {
-            rig,
-            correction,
-            exposure,
-            ..
-        } = *self.bench;
-        let corrected = |rgb: [f32; 3]| {
-            let rgb = rgb.map(f64::from);
-            let rgb = correction.map_or(rgb, |correction| correction.apply(rgb));
-            DVec3::from(rgb) * exposure
-        };
         let sheet = gloss::Sheet {
             classes: self.classes,
             normals: self.normals,
             albedo: &|i| linear(self.albedo[i]),
-            colour: &corrected,
+            colour: &|rgb| self.bench.colour(rgb),
         };
         let places = self.samples.of_class(class as u8, &sheet);
-        gloss::fit(model, name, medium, &places, rig)
+        gloss::fit(model, name, medium, &places, self.bench.rig)
     }
 
     fn amend(&mut self, class: usize, amendment: &Amendment) {
@@ -351,11 +343,7 @@ impl Sheet<'_, '_> {
         places.for_each(|((rgb, of), normal)| {
             if usize::from(*of) == class {
                 let normal = DVec3::from(normal.map(f64::from));
-                let amended = amendment.apply(linear(*rgb), normal);
-                // Casts saturate.
-                *rgb = amended
-                    .to_array()
-                    .map(|v| (srgb_encode(v).clamp(0.0, 1.0) * 65535.0).round() as u16);
+                *rgb = encoded(amendment.apply(linear(*rgb), normal));
             }
         });
     }
@@ -388,6 +376,12 @@ impl Sheet<'_, '_> {
 
 fn linear(rgb: [u16; 3]) -> DVec3 {
     DVec3::from(rgb.map(|v| srgb_decode(f64::from(v) / 65535.0)))
+}
+
+fn encoded(linear: DVec3) -> [u16; 3] {
+    // Casts saturate.
+    let encode = |v: f64| (srgb_encode(v).clamp(0.0, 1.0) * 65535.0).round() as u16;
+    linear.to_array().map(encode)
 }
 
 fn set_roughness(medium: &mut Medium, alpha: Option<f64>) {
