@@ -375,7 +375,8 @@ mod tests {
                             let f =
                                 spot.specimen
                                     .reflected(tier, upright * l, upright * DVec3::Z, 1.0);
-                            let whole = f * PI * n.dot(l);
+                            // One of the lamps is below the horizon of a place that is turned away.
+                            let whole = f * PI * n.dot(l).max(0.0);
                             let off = (spot.shown(n, l) - whole).abs().max_element();
                             assert!(off < 1e-9, "{medium:?} {alpha} {albedo:?}: {off}");
                         }
