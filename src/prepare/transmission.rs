@@ -9,7 +9,7 @@
 //! Where the light table was photographed alone at the same exposure, the level is known, and says
 //! how thick the sheet is for light.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -99,7 +99,7 @@ pub fn transmission(
     capture: &Capture,
     side: &Side<'_>,
     model: &Model,
-    scratch: &std::path::Path,
+    scratch: &Path,
 ) -> Result<Option<(Vec<u16>, Transmission)>, PrepareError> {
     let Some(frame) = &capture.transmitted else {
         return Ok(None);
@@ -215,8 +215,8 @@ fn solve(
 fn read(
     capture: &Capture,
     side: &Side<'_>,
-    path: &PathBuf,
-    scratch: &std::path::Path,
+    path: &Path,
+    scratch: &Path,
 ) -> Result<(Vec<f32>, f64), PrepareError> {
     let crop = side.shots.crop;
     let flat = capture
@@ -226,7 +226,7 @@ fn read(
     let field = flat
         .map(|card| FlatField::read(card, capture.encoding, crop, 1.0, scratch))
         .transpose()?;
-    let paths = [path.clone()];
+    let paths = [path.to_owned()];
     let mut stack = Stack::open(&paths, None, capture.encoding, crop, scratch)?;
     let mut grey = Vec::with_capacity(crop.width() * crop.height());
     let mut clipped = 0u64;
