@@ -99,7 +99,7 @@ pub fn transmission(
     capture: &Capture,
     side: &Side<'_>,
     model: &Model,
-    scratch: &std::path::Path,
+    scratch: &Path,
 ) -> Result<Option<(Vec<u16>, Transmission)>, PrepareError> {
     let Some(frame) = &capture.transmitted else {
         return Ok(None);

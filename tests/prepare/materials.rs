@@ -8,11 +8,7 @@ use recto::{
     manifest::Exhibit,
     maps::{self, ColourEncoding},
     optics::medium::{Matter, MediumId},
-    prepare::{
-        Report,
-        capture::Capture,
-        materials::{Materials, Method},
-    },
+    prepare::{Report, capture::Capture, materials::Materials},
 };
 
 use super::made::{self, HEIGHT, MEDIA, SWATCHES, Stand, WIDTH, lies, medium, swatch, swatches};
@@ -20,7 +16,13 @@ use super::made::{self, HEIGHT, MEDIA, SWATCHES, Stand, WIDTH, lies, medium, swa
 /// Places whose class is found, of all and of held-out ones.
 const AGREE: f64 = 0.95;
 /// Of a roughness: what its own surface shows of it.
-const ROUGHNESS: [(&str, f64); 3] = [("iron-gall-ink", 0.05), ("wash", 0.08), ("bare-paper", 0.1)];
+const ROUGHNESS: [(&str, f64); 4] = [
+    ("iron-gall-ink", 0.02),
+    ("wash", 0.02),
+    ("bare-paper", 0.02),
+    // Between its grains paper gleams, which the model has too, but not as much.
+    ("red-chalk", 0.08),
+];
 /// Mean error of τ, over its mean.
 const DEPTH: f64 = 0.06;
 
@@ -333,10 +335,4 @@ fn a_swatch_outside_is_a_fault() {
         told.contains("swatch[0].rect_px") && told.contains("crop_px"),
         "{told}"
     );
-}
-
-#[test]
-fn methods_have_names() {
-    assert_eq!(Method::Network.to_string(), "network");
-    assert_ne!(made::MEDIA[1], made::MEDIA[2]);
 }
