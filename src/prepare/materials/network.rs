@@ -6,11 +6,6 @@
 //! classes that are far apart from growing without end. The method: Hagan & Menhaj, *IEEE
 //! Transactions on Neural Networks* 5 (1994) 989.
 
-#![allow(
-    clippy::needless_range_loop,
-    reason = "several arrays run along one index, as their formulas do"
-)]
-
 use rand::{RngExt as _, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rayon::prelude::*;
 
