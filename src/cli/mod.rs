@@ -65,6 +65,9 @@ enum Command {
     /// Say what overlays and stacks of bands show at one place
     Probe(probe::Arguments),
     /// Make maps and an exhibit from photographs under several lamps
+    ///
+    /// The photographs are written down in a capture file, of which README.md has an example; `recto schema
+    /// --capture` prints every key with its meaning.
     Prepare(prepare::Arguments),
     /// Make an exhibit of a relightable image or a IIIF manifest, or a capture file of lamps
     #[command(after_help = import::HELP)]
