@@ -140,6 +140,7 @@ enhanced-sharpness = زيادة الوضوح: { $share }٪
 ## إرشادات
 
 touch-to-turn = إصبع واحدة تدير الورقة
+touch-to-move = إصبع واحدة تحرّك الورقة
 pinch-to-zoom = إصبعان تقرّبانها
 drag-lamp = أمسك المصباح وحرّكه
 two-visitors = يمكن لأحدكم أن يمسك الورقة ولآخر أن يمسك المصباح
@@ -172,7 +173,7 @@ staff-restart = إعادة التشغيل
 staff-next-exhibit = المعرض التالي
 staff-chart = لوحة اختبار
 staff-hours-off = إبقاء العرض مفتوحًا
-staff-status = الحالة
+staff-panel = الموظفون
 
 ## قراءات
 

@@ -140,6 +140,7 @@ enhanced-sharpness = geschärft: { $share } %
 ## Hinweise
 
 touch-to-turn = Ein Finger dreht das Blatt
+touch-to-move = Ein Finger verschiebt das Blatt
 pinch-to-zoom = Zwei Finger holen es näher
 drag-lamp = Die Lampe halten und bewegen
 two-visitors = Eine Person hält das Blatt, eine andere die Lampe
@@ -164,7 +165,7 @@ staff-restart = Neu starten
 staff-next-exhibit = Nächste Ausstellung
 staff-chart = Testbild
 staff-hours-off = Jetzt geöffnet lassen
-staff-status = Zustand
+staff-panel = Personal
 
 ## Messwerte
 

@@ -149,6 +149,7 @@ enhanced-sharpness = sharpened: { $share } %
 ## Hints
 
 touch-to-turn = One finger turns the sheet
+touch-to-move = One finger moves the sheet
 pinch-to-zoom = Two fingers bring it closer
 drag-lamp = Hold the lamp and move it
 two-visitors = One of you may hold the sheet, another the lamp
@@ -173,7 +174,7 @@ staff-restart = Restart
 staff-next-exhibit = Next exhibit
 staff-chart = Test chart
 staff-hours-off = Stay open now
-staff-status = Status
+staff-panel = Staff
 
 ## Readings
 

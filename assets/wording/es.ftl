@@ -140,6 +140,7 @@ enhanced-sharpness = nitidez: { $share } %
 ## Consejos
 
 touch-to-turn = Un dedo gira la hoja
+touch-to-move = Un dedo mueve la hoja
 pinch-to-zoom = Dos dedos la acercan
 drag-lamp = Sujete la lámpara y muévala
 two-visitors = Una persona puede sujetar la hoja y otra la lámpara
@@ -166,7 +167,7 @@ staff-restart = Reiniciar
 staff-next-exhibit = Exposición siguiente
 staff-chart = Carta de prueba
 staff-hours-off = Seguir abierto
-staff-status = Estado
+staff-panel = Personal
 
 ## Medidas
 

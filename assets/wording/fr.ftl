@@ -140,6 +140,7 @@ enhanced-sharpness = netteté : { $share } %
 ## Conseils
 
 touch-to-turn = Un doigt tourne la feuille
+touch-to-move = Un doigt déplace la feuille
 pinch-to-zoom = Deux doigts la rapprochent
 drag-lamp = Tenez la lampe et déplacez-la
 two-visitors = L’un peut tenir la feuille, l’autre la lampe
@@ -166,7 +167,7 @@ staff-restart = Redémarrer
 staff-next-exhibit = Exposition suivante
 staff-chart = Mire de contrôle
 staff-hours-off = Rester ouvert
-staff-status = État
+staff-panel = Personnel
 
 ## Mesures
 

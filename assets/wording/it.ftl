@@ -140,6 +140,7 @@ enhanced-sharpness = nitidezza: { $share }%
 ## Suggerimenti
 
 touch-to-turn = Con un dito giri il foglio
+touch-to-move = Con un dito sposti il foglio
 pinch-to-zoom = Con due dita lo avvicini
 drag-lamp = Tieni la lampada e spostala
 two-visitors = Uno può tenere il foglio, un altro la lampada
@@ -166,7 +167,7 @@ staff-restart = Riavvia
 staff-next-exhibit = Mostra successiva
 staff-chart = Scheda di prova
 staff-hours-off = Lascia aperto ora
-staff-status = Stato
+staff-panel = Personale
 
 ## Misure
 

@@ -140,6 +140,7 @@ enhanced-sharpness = 鮮明化：{ $share }%
 ## 案内
 
 touch-to-turn = 一本の指で紙を傾けます
+touch-to-move = 一本の指で紙を動かします
 pinch-to-zoom = 二本の指で近づけます
 drag-lamp = ランプを押さえて動かします
 two-visitors = 一人が紙を、もう一人がランプを動かせます
@@ -158,7 +159,7 @@ staff-restart = 再起動
 staff-next-exhibit = 次の展示
 staff-chart = テストチャート
 staff-hours-off = このまま開ける
-staff-status = 状態
+staff-panel = 職員用
 
 ## 測定値
 

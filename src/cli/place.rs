@@ -11,6 +11,7 @@ use super::{Failure, output};
 use crate::{
     installation::{Every, Installation, Machines, Profile, Wall, WallWindow, Windows},
     manifest::{Exhibit, Fault, Faults},
+    wall::house,
 };
 
 /// Checks the installation of `file` and every exhibit that it names.
@@ -18,6 +19,10 @@ pub fn check(file: &Path) -> Result<(), Failure> {
     let (installation, mut warnings) = Installation::read(file)?;
     let mut exhibits = Vec::new();
     let mut faults = Vec::new();
+    match house::wordings(&installation) {
+        Ok((_, more)) => warnings.extend(more),
+        Err(found) => faults.extend(found),
+    }
     for folder in &installation.exhibits.folders {
         match checked(folder) {
             Ok((exhibit, more)) => {

@@ -337,6 +337,8 @@ impl<'t> Document<'t> {
         let message = error.message();
         if message.contains("duplicate key") {
             "write each key once, or begin a new [[…]] table"
+        } else if message.contains("leading zero") {
+            "put what begins with 0 and is no number, such as a PIN, in quotation marks"
         } else if error
             .span()
             .is_some_and(|span| span.start >= self.text.trim_end().len())

@@ -139,10 +139,21 @@ pub fn nearest<'w>(word: &str, words: impl IntoIterator<Item = &'w str>) -> Opti
     if word.chars().count() > LONGEST {
         return None;
     }
+    /// Fewer letters begin too many words.
+    const BEGINNING: usize = 3;
     let lower = word.to_lowercase();
+    let words: Vec<&str> = words.into_iter().take(MOST).collect();
+    let begins = |candidate: &&&str| candidate.to_lowercase().starts_with(&lower);
+    let mut longer = words.iter().filter(begins);
+    if let (true, Some(only), None) = (
+        lower.chars().count() >= BEGINNING,
+        longer.next(),
+        longer.next(),
+    ) {
+        return Some(only);
+    }
     words
         .into_iter()
-        .take(MOST)
         .map(|candidate| {
             (
                 strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()),

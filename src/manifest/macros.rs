@@ -161,6 +161,7 @@ macro_rules! record {
 
         impl $crate::manifest::decode::Record for $name {
             const KEYS: &'static [&'static str] = &[$(stringify!($r),)* $(stringify!($o),)*];
+            const REQUIRED: usize = [$(stringify!($r),)* ""].len() - 1;
             const RULES: &'static [$crate::manifest::decode::Rule] = &[$($rule),*];
 
             #[allow(unused_variables, reason = "a record may have no keys of one sort")]
@@ -194,6 +195,10 @@ macro_rules! record {
                 report: &mut $crate::manifest::decode::Report<'_>,
             ) -> Option<Self> {
                 $crate::manifest::decode::decode_record(node, report)
+            }
+
+            fn to_add(trail: &$crate::manifest::document::Trail, _key: &str) -> String {
+                $crate::manifest::decode::table_to_add::<Self>(trail)
             }
         }
 

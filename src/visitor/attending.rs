@@ -148,6 +148,8 @@ pub fn serve_staff(
     for asked in asked.read() {
         match asked {
             Asked::Digit(digit) => staff.digit(*digit),
+            Asked::Erase => staff.erase(),
+            Asked::Enter => staff.enter(),
             Asked::Staff(wish) => match staff.ask(*wish) {
                 Some(Staff::Chart) => chart.show(time.elapsed()),
                 Some(wish) => drop(wishes.write(StaffWish(wish))),

@@ -7,6 +7,7 @@ use bevy::{input::touch::TouchPhase, prelude::*, window::WindowEvent};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    Hand,
     attending::{Closed, House},
     attract::Attract,
     controls::{Interface, Panel},
@@ -26,6 +27,8 @@ const TOOL_S: f64 = 20.0;
 pub enum Hint {
     /// A finger turns the sheet.
     Turn,
+    /// A finger moves the sheet, which is close.
+    Move,
     /// Two fingers bring it closer.
     Zoom,
     /// The lamp is held and moved.
@@ -38,7 +41,7 @@ impl Hint {
     fn seconds(self) -> f64 {
         match self {
             Self::Tool(_) => TOOL_S,
-            Self::Turn | Self::Zoom | Self::Lamp => GESTURE_S,
+            Self::Turn | Self::Move | Self::Zoom | Self::Lamp => GESTURE_S,
         }
     }
 
@@ -46,6 +49,7 @@ impl Hint {
     fn id(self) -> &'static str {
         match self {
             Self::Turn => "touch-to-turn",
+            Self::Move => "touch-to-move",
             Self::Zoom => "pinch-to-zoom",
             Self::Lamp => "drag-lamp",
             Self::Tool(kind) => phrases::tool_ids(kind)[1],
@@ -118,8 +122,8 @@ impl Hints {
     }
 
     /// The sheet is touched: of what can be done with it, the first that is not known yet is told.
-    fn touched(&mut self) {
-        let mut all = [Hint::Turn, Hint::Zoom].into_iter();
+    fn touched(&mut self, one_finger: Hint) {
+        let mut all = [one_finger, Hint::Zoom].into_iter();
         let next = all.find(|hint| !self.known.contains(hint));
         // One line at a time, and no lesson: the second one comes with the second touch.
         if let (Some(hint), None) = (next, self.now) {
@@ -127,11 +131,11 @@ impl Hints {
         }
     }
 
-    /// Takes in one wish; `is_free` while no tool is in the hand.
-    fn take(&mut self, intent: Intent, is_free: bool) {
+    /// Takes in one wish; `is_free` while no tool is in the hand, and `one_finger` does what it would do now.
+    fn take(&mut self, intent: Intent, is_free: bool, one_finger: Hint) {
         match intent {
-            Intent::Take | Intent::Tap(_) if is_free && self.fingers => self.touched(),
-            Intent::Drag { .. } => self.doing = Some(Hint::Turn),
+            Intent::Take | Intent::Tap(_) if is_free && self.fingers => self.touched(one_finger),
+            Intent::Drag { .. } => self.doing = Some(one_finger),
             Intent::Pinch { .. } => self.doing = Some(Hint::Zoom),
             Intent::Release => {
                 if let Some(done) = self.doing.take() {
@@ -163,6 +167,7 @@ impl Hints {
 pub fn follow(
     (mut intents, mut events): (MessageReader<Intent>, MessageReader<WindowEvent>),
     (measuring, interface, attract): (Res<Measuring>, Res<Interface>, Res<Attract>),
+    hand: Res<Hand>,
     (closed, house, time): (Res<Closed>, Res<House>, Res<Time<Real>>),
     mut hints: ResMut<Hints>,
     mut tool: Local<Option<Kind>>,
@@ -180,7 +185,11 @@ pub fn follow(
         silent.pass(time.delta_secs_f64());
         let kind = measuring.kind();
         for intent in intents.read() {
-            silent.take(*intent, kind.is_none());
+            let one_finger = match hand.moves_by_one_finger() {
+                true => Hint::Move,
+                false => Hint::Turn,
+            };
+            silent.take(*intent, kind.is_none(), one_finger);
         }
         silent.follow_tool(kind, measuring.laid().len(), *tool);
         let is_lit =
@@ -217,29 +226,42 @@ mod tests {
     fn the_first_touch_is_told_what_to_do_until_it_is_done() {
         let mut hints = visitor();
         assert_eq!(hints.now(), None);
-        hints.take(Intent::Take, true);
+        hints.take(Intent::Take, true, Hint::Turn);
         assert_eq!(hints.now(), Some(Hint::Turn));
-        hints.take(DRAG, true);
+        hints.take(DRAG, true, Hint::Turn);
         assert_eq!(hints.now(), Some(Hint::Turn), "while the hand turns it");
-        hints.take(Intent::Release, true);
+        hints.take(Intent::Release, true, Hint::Turn);
         assert_eq!(hints.now(), None);
-        hints.take(Intent::Take, true);
+        hints.take(Intent::Take, true, Hint::Turn);
         assert_eq!(hints.now(), Some(Hint::Zoom));
         hints.pass(GESTURE_S - 0.1);
         assert!(hints.now().is_some() && hints.next().is_some());
         hints.pass(0.2);
         assert_eq!((hints.now(), hints.next()), (None, None), "by itself");
-        hints.take(Intent::Take, true);
+        hints.take(Intent::Take, true, Hint::Turn);
         assert_eq!(hints.now(), None, "nothing is told twice");
+    }
+
+    #[test]
+    fn a_sheet_that_is_close_moves_under_the_finger_and_so_it_is_told() {
+        let mut hints = visitor();
+        hints.take(Intent::Take, true, Hint::Move);
+        assert_eq!(hints.now(), Some(Hint::Move));
+        hints.take(DRAG, true, Hint::Move);
+        hints.take(Intent::Release, true, Hint::Move);
+        assert_eq!(hints.now(), None);
+        // Once it is at rest size again, the finger does something else.
+        hints.take(Intent::Take, true, Hint::Turn);
+        assert_eq!(hints.now(), Some(Hint::Turn));
     }
 
     #[test]
     fn a_mouse_is_not_told_of_fingers_and_a_tool_is_not_told_of_the_sheet() {
         let mut hints = Hints::default();
-        hints.take(Intent::Take, true);
+        hints.take(Intent::Take, true, Hint::Turn);
         assert_eq!(hints.now(), None);
         let mut hints = visitor();
-        hints.take(Intent::Take, false);
+        hints.take(Intent::Take, false, Hint::Turn);
         assert_eq!(hints.now(), None);
     }
 

@@ -25,8 +25,23 @@ const FORGOTTEN: Duration = Duration::from_secs(30);
 const WAIT: Duration = Duration::from_secs(2);
 const LONGEST: Duration = Duration::from_secs(300);
 
+/// Nobody types more digits: a PIN has no more.
+const MOST_DIGITS: usize = 12;
 /// The keys of the pad, in rows of three.
-const PAD: [u8; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 0];
+const PAD: [Control; 12] = [
+    Control::Digit(1),
+    Control::Digit(2),
+    Control::Digit(3),
+    Control::Digit(4),
+    Control::Digit(5),
+    Control::Digit(6),
+    Control::Digit(7),
+    Control::Digit(8),
+    Control::Digit(9),
+    Control::Erase,
+    Control::Digit(0),
+    Control::Enter,
+];
 
 /// What the staff asks of the house.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,20 +152,35 @@ impl StaffPanel {
         }
     }
 
+    /// What is typed, unless nothing is taken just now.
+    fn typed(&mut self) -> Option<&mut String> {
+        self.touched = self.now;
+        match &mut self.state {
+            State::Asking(typed) if self.now >= self.locked_until => Some(typed),
+            _ => None,
+        }
+    }
+
     /// A digit is typed.
     pub fn digit(&mut self, digit: u8) {
-        self.touched = self.now;
-        let (State::Asking(typed), Some(pin)) = (&mut self.state, &self.pin) else {
+        if let Some(typed) = self.typed().filter(|typed| typed.len() < MOST_DIGITS) {
+            typed.push(char::from(b'0' + digit.min(9)));
+        }
+    }
+
+    /// The last digit is taken back.
+    pub fn erase(&mut self) {
+        if let Some(typed) = self.typed() {
+            typed.pop();
+        }
+    }
+
+    /// What was typed is the PIN, or is not: nothing before says how long it is.
+    pub fn enter(&mut self) {
+        let Some(typed) = self.typed().filter(|typed| !typed.is_empty()).cloned() else {
             return;
         };
-        if self.now < self.locked_until {
-            return;
-        }
-        typed.push(char::from(b'0' + digit.min(9)));
-        if typed.len() < pin.length() {
-            return;
-        }
-        if pin.matches(typed) {
+        if self.pin.as_ref().is_some_and(|pin| pin.matches(&typed)) {
             (self.state, self.wrong) = (State::Open, 0);
             return;
         }
@@ -196,16 +226,21 @@ impl StaffPanel {
                     }
                 };
                 let hidden = "*".repeat(typed.len());
-                let digit = |digit: &u8| {
-                    let words = digit.to_string();
-                    Item::button(Control::Digit(*digit), None, words, false)
+                let key = |key: &Control| {
+                    let (icon, words) = match key {
+                        Control::Erase => (Some(Icon::Erase), spoken.say("take-back")),
+                        Control::Enter => (Some(Icon::Done), spoken.say("done")),
+                        Control::Digit(digit) => (None, digit.to_string()),
+                        _ => (None, String::new()),
+                    };
+                    Item::button(*key, icon, words, false)
                 };
                 let head = [words(said), words(hidden)];
-                let pad = PAD.iter().map(digit);
+                let pad = PAD.iter().map(key);
                 Some(head.into_iter().chain(pad).chain([back]).collect())
             }
             State::Open => Some(vec![
-                words(spoken.say("staff-status")),
+                words(spoken.say("staff-panel")),
                 button(Staff::NextExhibit, None, "staff-next-exhibit"),
                 button(Staff::Hours, None, "staff-hours-off"),
                 button(Staff::Chart, None, "staff-chart"),
@@ -232,6 +267,7 @@ mod tests {
 
     fn type_in(panel: &mut StaffPanel, pin: [u8; 4]) {
         pin.into_iter().for_each(|digit| panel.digit(digit));
+        panel.enter();
     }
 
     #[test]
@@ -271,6 +307,31 @@ mod tests {
         type_in(&mut panel, [4, 7, 1, 1]);
         assert_eq!(panel.ask(Staff::Quit), Some(Staff::Quit));
         assert!(!panel.is_open());
+    }
+
+    #[test]
+    fn a_digit_is_taken_back_and_nothing_says_how_long_the_pin_is() {
+        let mut panel = asking();
+        for digit in [4, 7, 1, 2] {
+            panel.digit(digit);
+        }
+        assert_eq!(
+            panel.state,
+            State::Asking("4712".into()),
+            "nothing is tried"
+        );
+        panel.erase();
+        panel.digit(1);
+        panel.enter();
+        assert_eq!(panel.state, State::Open);
+        let mut panel = asking();
+        panel.erase();
+        panel.enter();
+        assert_eq!(panel.wrong, 0, "nothing was typed");
+        for _ in 0..40 {
+            panel.digit(9);
+        }
+        assert_eq!(panel.state, State::Asking("9".repeat(MOST_DIGITS)));
     }
 
     #[test]

@@ -3,8 +3,9 @@
 
 use std::{
     sync::{
-        Arc,
+        Arc, OnceLock,
         atomic::{AtomicU64, Ordering},
+        mpsc::Receiver,
     },
     thread,
     time::Duration,
@@ -27,11 +28,13 @@ use super::{
     heartbeat::Heart,
     keeper::{self, Clock, Keeper},
     panes::{self, PaneMaterial, PanesPlugin},
+    signals::{self, Signal},
     together::{self, Turn},
 };
 use crate::{
     installation::{Contrast, Installation, Machine, Pane, Wall, WallWindow},
-    stage::{StageSet, composite::PictureCamera, say},
+    manifest::{Fault, Faults, Severity},
+    stage::{StageSet, Waker, composite::PictureCamera, say},
     visitor::{
         self, Manners, ShowError, ShowOptions, Waits,
         controls::draw::ProgramWords,
@@ -43,6 +46,8 @@ use crate::{
 
 /// Between two looks at whether frames were completed.
 const POLL: Duration = Duration::from_millis(500);
+/// How long a program that was asked to end may take to say so in its log; its supervisor waits a little longer.
+const LEAVING: Duration = Duration::from_secs(4);
 
 /// Shows the exhibits of `installation` until somebody who may ends it; as one `machine` of several, its part
 /// of them.
@@ -54,8 +59,9 @@ pub fn show(
     machine: Option<Machine>,
     options: &ShowOptions,
 ) -> Result<u8, ShowError> {
-    let folder = installation.interface.wording.as_deref();
-    let (wordings, warnings) = Wordings::read(folder)?;
+    // Before any thread is started: all of them leave signals to one.
+    let signals = signals::taken();
+    let (wordings, warnings) = wordings(&installation)?;
     for warning in warnings {
         say(warning);
     }
@@ -72,7 +78,41 @@ pub fn show(
         manners,
         ..options.clone()
     };
-    visitor::show_in(&path, &options, |app| furnish(app, keeper, wordings))
+    let leaves = keeper.leaves.clone();
+    visitor::show_in(&path, &options, |app| {
+        furnish(app, keeper, wordings);
+        match signals {
+            Ok(signals) => heed(app, signals, leaves),
+            Err(error) => say(format_args!("recto: signals cannot be taken ({error})")),
+        }
+    })
+}
+
+/// The words of `installation`, with warnings: a language that it offers and that nobody has words for is one.
+///
+/// # Errors
+/// All faults of the museum's own words.
+pub fn wordings(installation: &Installation) -> Result<(Wordings, Vec<Fault>), Faults> {
+    let (wordings, mut warnings) = Wordings::read(installation.interface.wording.as_deref())?;
+    let known: Vec<&str> = wordings.languages().collect();
+    for (i, language) in installation.languages.iter().enumerate() {
+        if wordings.speaks(language) {
+            continue;
+        }
+        warnings.push(Fault {
+            severity: Severity::Warning,
+            file: Some(installation.file.clone()),
+            place: None,
+            path: format!("languages[{i}]"),
+            found: format!("\"{language}\", in which controls have no words and are English"),
+            allowed: known.join(", "),
+            remedy: format!(
+                "add {language}.ftl to the folder that [interface] wording names, or remove it"
+            ),
+            unreadable: false,
+        });
+    }
+    Ok((wordings, warnings))
 }
 
 /// How the place wants its picture to behave.
@@ -127,6 +167,19 @@ pub fn furnish(app: &mut App, keeper: Keeper, wordings: Wordings) {
             desktop::look.run_if(resource_exists::<Desktop>),
         ),
     );
+}
+
+/// A signal ends the program after a line in its log; one whose loop does not turn any more ends all the same.
+fn heed(app: &App, signals: Receiver<Signal>, leaves: Arc<OnceLock<Signal>>) {
+    let waker = app.world().resource::<Waker>().clone();
+    thread::spawn(move || {
+        if let Ok(signal) = signals.recv() {
+            let _ = leaves.set(signal);
+            (waker.0)();
+            thread::sleep(LEAVING);
+            std::process::exit(1);
+        }
+    });
 }
 
 /// One picture over all displays, in the windows of this machine.

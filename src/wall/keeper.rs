@@ -3,7 +3,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
     time::Duration,
 };
 
@@ -14,7 +14,9 @@ use super::{
     health::{self, Health},
     heartbeat::{self, Heart},
     journal::{self, Journal, Level},
+    signals::Signal,
     status::Status,
+    supervise::BEGUN_ANEW,
     together::{self, Following, Party, Turn},
     usage::Usage,
 };
@@ -64,6 +66,8 @@ pub struct Keeper {
     /// It has a receiver, which is not Sync.
     usage: Mutex<Usage>,
     pub heart: Option<Arc<Heart>>,
+    /// The signal that asked the program to end, once there was one.
+    pub leaves: Arc<OnceLock<Signal>>,
     _status: Option<Status>,
     /// When the program begins anew.
     restart: Option<Zoned>,
@@ -108,6 +112,14 @@ pub fn keep(
     let seconds = time.delta_secs_f64();
     if seconds < 1.0 {
         keeper.health.frame((seconds * 1e3) as f32);
+    }
+    if let Some(signal) = keeper.leaves.get() {
+        let signal = signal.to_string();
+        keeper
+            .journal
+            .write(Level::Info, "ends", &[("signal", signal.into())]);
+        exit.write(AppExit::Success);
+        return;
     }
     let mut end = None;
     for StaffWish(wish) in wishes.read() {
@@ -213,8 +225,15 @@ impl Keeper {
                 })
                 .ok()
         });
-        let version = env!("CARGO_PKG_VERSION");
-        journal.write(Level::Info, "started", &[("version", version.into())]);
+        let version = ("version", env!("CARGO_PKG_VERSION").into());
+        match std::env::var(BEGUN_ANEW) {
+            Ok(words) => journal.write(
+                Level::Warning,
+                "started anew",
+                &[version, ("the last one", words.into())],
+            ),
+            Err(_) => journal.write(Level::Info, "started", &[version]),
+        }
         let heart = Heart::from_environment().map(Arc::new);
         let now = (clock.0)().to_zoned(installation.hours.time_zone.clone());
         Self {
@@ -239,6 +258,7 @@ impl Keeper {
             journal,
             usage: Mutex::new(usage),
             heart,
+            leaves: Arc::default(),
             _status: status,
             clock,
             installation,

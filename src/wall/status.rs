@@ -182,7 +182,7 @@ fn page(report: &Report) -> String {
     let frames = match times.frames_in_last_minute {
         0 => "none in the last minute: nothing moves".to_owned(),
         n => format!(
-            "{n} in the last minute: {:.1} ms, of 20 the slowest {:.1} ms, at worst {:.1} ms",
+            "{n} in the last minute: half of them took up to {:.1} ms, 19 of 20 up to {:.1} ms, the slowest {:.1} ms",
             times.median_ms, times.p95_ms, times.worst_ms
         ),
     };

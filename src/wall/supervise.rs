@@ -39,6 +39,8 @@ const LONGEST_WAIT: Duration = Duration::from_secs(60);
 const QUIET: Duration = Duration::from_secs(600);
 /// The code of wrong usage.
 const USAGE: i32 = 2;
+/// The environment variable that tells a window why it was begun anew, for its log.
+pub const BEGUN_ANEW: &str = "RECTO_BEGUN_ANEW";
 /// What systemd tells its services, of which the window is none.
 const OF_SYSTEMD: [&str; 3] = ["NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"];
 
@@ -254,9 +256,10 @@ struct Supervisor<'s> {
 impl Supervisor<'_> {
     fn run(&mut self) -> Ended {
         let mut failures = 0;
+        let mut last_end = None;
         loop {
             let started = Instant::now();
-            let outcome = match self.start() {
+            let outcome = match self.start(last_end.as_deref()) {
                 Ok(child) => self.look_after(child),
                 Err(error) => Outcome::Failed(Failure {
                     words: format!(
@@ -289,6 +292,7 @@ impl Supervisor<'_> {
                 false => format!("again in {} s", wait.as_secs()),
             };
             self.log(&format!("{words} after {ran}; {next}"));
+            last_end = Some(format!("{words} after {ran}"));
             let status = format!("{} restarts, the last as it {words}", self.restarts);
             notify(&[NotifyState::Status(&status)]);
             if self.pause(wait).is_some() {
@@ -301,7 +305,7 @@ impl Supervisor<'_> {
         (self.say)(&format!("recto supervise: {words}"));
     }
 
-    fn start(&self) -> io::Result<Child> {
+    fn start(&self, last_end: Option<&str>) -> io::Result<Child> {
         match fs::remove_file(&self.heartbeat) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
             _ => {}
@@ -310,6 +314,9 @@ impl Supervisor<'_> {
         command
             .args(&self.supervised.arguments)
             .env(HEARTBEAT, &self.heartbeat);
+        if let Some(words) = last_end {
+            command.env(BEGUN_ANEW, words);
+        }
         for name in OF_SYSTEMD {
             command.env_remove(name);
         }

@@ -180,6 +180,11 @@ impl Wordings {
             .map_or(language, String::as_str)
     }
 
+    /// Whether there are words in `language`, or in what it derives from.
+    pub fn speaks(&self, language: &str) -> bool {
+        self.lineage(language).next().is_some()
+    }
+
     /// Whether `id` is a message of any language.
     pub fn knows(&self, id: &str) -> bool {
         self.languages.iter().any(|language| language.knows(id))

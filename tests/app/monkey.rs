@@ -24,8 +24,10 @@ use super::visit::{SIZE, Session, WAITS, resident_mib};
 /// Events in the suite; as many as this says at night.
 const EVENTS: usize = 10_000;
 const EVENTS_ASKED: &str = "RECTO_MONKEY_EVENTS";
-/// Events between two frames.
+/// Events between two frames on the average; some frames have one, some twice as many. In a long run they are as
+/// many as twenty fingers send in a frame of a 60 Hz display by a glass that looks 120 times a second.
 const A_FRAME: usize = 10;
+const A_FRAME_LONG: usize = 40;
 /// And between two saves.
 const A_SAVE: usize = 500;
 /// So many times it is looked at how much is held.
@@ -147,6 +149,8 @@ fn whatever_is_touched_home_is_reached() {
     });
     let folder = session.folder().to_owned();
     let mut held = Vec::new();
+    let a_frame = if events < LONG { A_FRAME } else { A_FRAME_LONG };
+    let mut next_frame = 0;
     for k in 0..events {
         if k % A_SAVE == A_SAVE - 1 {
             save(&mut random, &folder);
@@ -173,7 +177,8 @@ fn whatever_is_touched_home_is_reached() {
                 session.touch(id, phase, at);
             }
         }
-        if k % A_FRAME == 0 {
+        if k == next_frame {
+            next_frame += random.random_range(1..2 * a_frame);
             let ms = random.random_range(1..60);
             session.pass(std::time::Duration::from_millis(ms));
             let camera = session.shown().scene.camera;

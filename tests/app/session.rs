@@ -316,6 +316,7 @@ fn staff_have_a_chart_in_the_dark_too_and_it_goes_by_itself() {
         for digit in [8, 3, 5, 0] {
             session.press(Control::Digit(digit));
         }
+        session.press(Control::Enter);
         session.press(Control::Staff(Staff::Chart));
         session.frame();
     };

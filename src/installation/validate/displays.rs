@@ -55,19 +55,19 @@ impl Validator<'_, '_> {
         // Each machine has a desktop of its own.
         let mut next_px: BTreeMap<Option<&str>, i32> = BTreeMap::new();
         for (i, raw) in list.iter() {
-            let trail = trail.index(i);
+            let one = trail.index(i);
             if from_floor && raw.bottom_above_floor_mm.is_none() {
                 let words = Words::new(
                     "no bottom_above_floor_mm, which another display has",
                     "it for all displays or for none",
                     "add it, instead of top_mm",
                 );
-                self.report.fault(&trail, words);
+                self.report.fault(&one, words);
             }
             let machine = raw.machine.as_ref().map(|machine| machine.as_str());
-            let display = self.display(raw, next_px.entry(machine).or_default(), &trail);
+            let display = self.display(raw, next_px.entry(machine).or_default(), &one);
             for (other, earlier) in &displays {
-                self.apart(&display, earlier, &trail, *other);
+                self.apart(&display, earlier, [&one, &trail.index(*other)], *other);
             }
             displays.push((i, display));
         }
@@ -144,7 +144,19 @@ impl Validator<'_, '_> {
     }
 
     /// Two displays have neither a name nor a place in common.
-    fn apart(&mut self, display: &Display, earlier: &Display, trail: &Trail, other: usize) {
+    fn apart(
+        &mut self,
+        display: &Display,
+        earlier: &Display,
+        [trail, earlier_trail]: [&Trail; 2],
+        other: usize,
+    ) {
+        // A place that could not be read covers nothing.
+        let are_placed = [trail, earlier_trail].iter().all(|trail| {
+            let keys = ["left_mm", "top_mm", "bottom_above_floor_mm"];
+            keys.iter()
+                .all(|key| !self.report.faulty_within(&trail.key(key)))
+        });
         let mut refuse = |key: &str, found: String, allowed: &str, remedy: &str| {
             let words = Words::new(found, allowed, remedy);
             self.report.fault(&trail.key(key), words);
@@ -166,7 +178,7 @@ impl Validator<'_, '_> {
                 "correct one of the two",
             );
         }
-        if display.on_wall.overlaps(&earlier.on_wall) {
+        if are_placed && display.on_wall.overlaps(&earlier.on_wall) {
             let both = display.on_wall.max.min(earlier.on_wall.max)
                 - display.on_wall.min.max(earlier.on_wall.min);
             let found = format!(

@@ -303,6 +303,18 @@ impl Validator<'_, '_> {
             );
             self.report.fault(trail, words);
         }
+        // The usual reach says nothing either, but nobody has asked for it.
+        let is_asked = from.is_some() || to.is_some();
+        let knows_floor = wall.is_some_and(|wall| wall.top_above_floor_mm.is_some());
+        let floor = Trail::default().key("bottom_above_floor_mm");
+        if is_asked && !knows_floor && !self.report.faulty_within(&floor) {
+            let words = Words::new(
+                "a reach above a floor that no display is said to be above",
+                "it together with bottom_above_floor_mm, without which controls lie anywhere",
+                "add bottom_above_floor_mm above the first table, and each [[display]] with its size_mm",
+            );
+            self.report.warn(trail, words);
+        }
         Some(reach)
     }
 }

@@ -76,6 +76,8 @@ impl<T: Decode, const MIN: usize, const MAX: usize> Decode for List<T, MIN, MAX>
                     "write [[{}]] above it, with two brackets",
                     node.trail.header()
                 )
+            } else if MIN == 0 {
+                "put it in square brackets; [] is none".to_owned()
             } else {
                 "put it in square brackets".to_owned()
             };

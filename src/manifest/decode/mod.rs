@@ -21,7 +21,7 @@ use super::{
 pub use collection::{Brief, Dictionary, List, OneOrMany, Pattern};
 pub use kinds::{Kinds, OfKind};
 pub use record::{ObjectSchema, Record};
-pub(crate) use record::{decode_record, optional, record_schema, required};
+pub(crate) use record::{decode_record, optional, record_schema, required, table_to_add};
 pub use rule::Rule;
 
 /// A value of the tree and the way to it.
@@ -158,10 +158,11 @@ impl<'d> Report<'d> {
         self.record(trail, At::Value, Severity::Warning, words);
     }
 
-    /// Whether anything inside the value at `trail` is at fault.
+    /// Whether anything inside the value at `trail` is at fault, or its key is misspelt.
     pub(crate) fn faulty_within(&self, trail: &Trail) -> bool {
         // Of what is not listed the trail is not known.
         self.overflown
+            || self.meant.iter().any(|place| trail.holds(place))
             || self
                 .faults
                 .iter()
@@ -206,6 +207,11 @@ pub trait Decode: Sized + JsonSchema {
 
     /// `None` if the value is at fault, which is then in `report`.
     fn decode(node: &Node<'_>, report: &mut Report<'_>) -> Option<Self>;
+
+    /// What to do where it is missing at `trail`, which ends in `key`.
+    fn to_add(_trail: &Trail, key: &str) -> String {
+        format!("add {key}")
+    }
 }
 
 impl Decode for bool {

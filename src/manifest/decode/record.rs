@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::{
     super::{
-        document::{At, Words},
+        document::{At, Trail, Words},
         fault::{Severity, did_you_mean, nearest, quote},
     },
     Decode, Node, Report, Rule,
@@ -15,6 +15,8 @@ use super::{
 pub trait Record: Sized {
     /// All keys in the order of their declaration.
     const KEYS: &'static [&'static str];
+    /// How many of them, from the first, have to be there.
+    const REQUIRED: usize;
     const RULES: &'static [Rule];
 
     /// Decodes the values of the known keys, not looking for others.
@@ -36,6 +38,15 @@ pub(crate) fn decode_record<T: Record + Decode>(
     refuse_unknown_keys(node, T::KEYS, report);
     let fields = T::decode_fields(node, report);
     check_rules(node, T::RULES, report).and(fields)
+}
+
+/// As [`Decode::to_add`]: the table's header and the keys that it cannot be without.
+pub(crate) fn table_to_add<T: Record>(trail: &Trail) -> String {
+    let header = format!("add [{}]", trail.header());
+    match &T::KEYS[..T::REQUIRED] {
+        [] => header,
+        keys => format!("{header} with {}", keys.join(", ")),
+    }
 }
 
 pub(super) fn table_remedy(first_key: &str) -> String {
@@ -92,10 +103,8 @@ pub(crate) fn required<T: Decode>(
         None => {
             let trail = node.trail.key(key);
             if !report.meant.contains(&trail) {
-                report.fault(
-                    &trail,
-                    Words::new("nothing", T::allowed(), format!("add {key}")),
-                );
+                let remedy = T::to_add(&trail, key);
+                report.fault(&trail, Words::new("nothing", T::allowed(), remedy));
             }
             None
         }

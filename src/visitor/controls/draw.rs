@@ -180,9 +180,9 @@ impl Colours {
         ground: Color::srgba(0.075, 0.065, 0.055, 0.88),
         button: Color::srgba(0.16, 0.145, 0.125, 0.9),
         held: Color::srgb(0.32, 0.29, 0.25),
-        on: Color::srgb(0.9, 0.85, 0.74),
+        on: Color::srgb(0.88, 0.69, 0.38),
         words: Color::srgb(0.95, 0.92, 0.85),
-        words_on: Color::srgb(0.1, 0.08, 0.06),
+        words_on: Color::srgb(0.05, 0.035, 0.02),
         focus: Color::srgb(0.45, 0.8, 1.0),
     };
     const HIGH: Self = Self {
@@ -300,6 +300,14 @@ impl Pen<'_> {
         )
     }
 
+    /// Draws dark letters a second time: light is mixed linearly, and their edges would look thin.
+    fn firm(&self) -> TextShadow {
+        TextShadow {
+            offset: Vec2::ZERO,
+            color: self.colours.words_on,
+        }
+    }
+
     fn draw(
         &self,
         commands: &mut Commands,
@@ -374,7 +382,9 @@ impl Pen<'_> {
                 };
                 let title = shortened(&widget.words, size.x / (self.text * 0.85 * 0.55));
                 let size = self.text * 0.85;
-                inside.spawn(self.set(&title, size, words, LineBreak::NoWrap));
+                inside
+                    .spawn(self.set(&title, size, words, LineBreak::NoWrap))
+                    .insert_if(self.firm(), || is_on && !is_held);
             }
             _ => {
                 if let Some(image) = image {
@@ -387,7 +397,9 @@ impl Pen<'_> {
                     inside.spawn((ImageNode::new(image).with_color(words), node));
                 }
                 if !widget.words.is_empty() {
-                    inside.spawn(self.words(&widget.words, self.text, words));
+                    inside
+                        .spawn(self.words(&widget.words, self.text, words))
+                        .insert_if(self.firm(), || is_on && !is_held);
                 }
             }
         });

@@ -267,7 +267,7 @@ fn list(
             let on = hand.shows_hotspots();
             items.push(setting(Control::Hotspots, Icon::Layers, "hotspots", on));
         }
-        items.push(setting(Control::Caption, Icon::Scenes, "caption", false));
+        items.push(setting(Control::Caption, Icon::Caption, "caption", false));
         let larger = interface.text > 0;
         items.push(setting(
             Control::TextSize,

@@ -39,6 +39,10 @@ pub enum Icon {
     Motion,
     Back,
     Done,
+    /// A key that takes a letter back.
+    Erase,
+    /// A label beside a picture.
+    Caption,
 }
 
 type Strokes = Vec<Vec<Vec2>>;
@@ -228,6 +232,24 @@ impl Icon {
             Self::Back => vec![
                 line(&[[0.86, 0.5], [0.14, 0.5]]),
                 line(&[[0.4, 0.24], [0.14, 0.5], [0.4, 0.76]]),
+            ],
+            Self::Erase => vec![
+                line(&[
+                    [0.06, 0.5],
+                    [0.34, 0.22],
+                    [0.94, 0.22],
+                    [0.94, 0.78],
+                    [0.34, 0.78],
+                    [0.06, 0.5],
+                ]),
+                line(&[[0.5, 0.38], [0.74, 0.62]]),
+                line(&[[0.74, 0.38], [0.5, 0.62]]),
+            ],
+            Self::Caption => vec![
+                rectangle(0.12, 0.14, 0.88, 0.86),
+                line(&[[0.26, 0.36], [0.6, 0.36]]),
+                line(&[[0.26, 0.52], [0.74, 0.52]]),
+                line(&[[0.26, 0.66], [0.74, 0.66]]),
             ],
             Self::Done => vec![line(&[[0.14, 0.54], [0.4, 0.8], [0.86, 0.24]])],
         }

@@ -374,8 +374,16 @@ fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
     let across = columns as f32 * (width + gap) + gap;
     let rows = facts.presets.len().div_ceil(columns);
     let line = room.text * LINE;
+    // Words in two lines leave their sign its room.
+    let breaks = |item: &Item| room.width_of(&item.words) + 0.6 * room.text > width;
+    let preset = match facts.presets.iter().any(breaks) {
+        true => target + line,
+        false => target,
+    };
     let room_for = bottom - gap - free.min.y;
-    let tall = |sliders: usize| (rows + sliders) as f32 * (target + gap) + 3.0 * gap + line;
+    let tall = |sliders: usize| {
+        rows as f32 * (preset + gap) + sliders as f32 * (target + gap) + 3.0 * gap + line
+    };
     // What there is no room for is left to keys: the lamp itself comes first.
     let sliders = match tall(facts.sliders.len()) - line <= room_for {
         true => &facts.sliders[..],
@@ -426,10 +434,12 @@ fn light(room: &Room, laid: &mut Laid, facts: &Facts, bottom: f32) {
         }
     }
     for (k, item) in facts.presets.iter().enumerate() {
-        let rect = room.cell(Vec2::new(left + gap, y), [k % columns, k / columns], width);
+        let cell = Vec2::new((k % columns) as f32, (k / columns) as f32);
+        let min = Vec2::new(left + gap, y) + cell * (Vec2::new(width, preset) + gap);
+        let rect = Rect::from_corners(min, min + Vec2::new(width, preset));
         laid.widgets.push(item.at(rect));
     }
-    y += rows as f32 * (target + gap);
+    y += rows as f32 * (preset + gap);
     for item in sliders {
         laid.widgets
             .push(item.at(Rect::new(left + gap, y, free.max.x - gap, y + target)));

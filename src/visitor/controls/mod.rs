@@ -114,6 +114,10 @@ pub enum Control {
     /// Refuses the countdown.
     Stay,
     Digit(u8),
+    /// Takes the last digit back.
+    Erase,
+    /// The digits are typed.
+    Enter,
     Staff(Staff),
     /// Nothing: words.
     Said,

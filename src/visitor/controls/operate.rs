@@ -23,6 +23,8 @@ const LAMP_STEP: f64 = 0.06;
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
     Digit(u8),
+    Erase,
+    Enter,
     Staff(super::Staff),
     /// The countdown is refused.
     Stay,
@@ -264,6 +266,8 @@ fn apply(
         }
         Control::Stay => drop(asked.write(Asked::Stay)),
         Control::Digit(digit) => drop(asked.write(Asked::Digit(digit))),
+        Control::Erase => drop(asked.write(Asked::Erase)),
+        Control::Enter => drop(asked.write(Asked::Enter)),
         Control::Staff(staff) => drop(asked.write(Asked::Staff(staff))),
         _ => {}
     }

@@ -104,6 +104,11 @@ impl Hand {
         DVec2::from_angle(self.view.camera.turn.radians()).rotate(seen)
     }
 
+    /// Whether one finger moves the sheet, which has been brought closer, instead of turning it.
+    pub fn moves_by_one_finger(&self) -> bool {
+        self.camera().width_mm < ZOOMED * self.widest() && self.turn == DVec2::ZERO
+    }
+
     pub(super) fn drag(&mut self, from: DVec2, to: DVec2) {
         let grip = match self.grip {
             Some(Grip::Undecided) | None => {
@@ -111,9 +116,7 @@ impl Hand {
                 let taken = |comparison: &Comparison| comparison.is_taken_at(from, aspect);
                 if self.view.compare.as_ref().is_some_and(taken) {
                     Grip::Compare
-                } else if self.camera().width_mm < ZOOMED * self.widest()
-                    && self.turn == DVec2::ZERO
-                {
+                } else if self.moves_by_one_finger() {
                     Grip::Move
                 } else {
                     Grip::Turn
