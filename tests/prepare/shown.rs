@@ -24,9 +24,9 @@ const DPI: f64 = 100.0;
 /// None of them is one of the capture's: half way between two, raking, and from high above.
 const SHOWN_UNDER: [Lamp; 3] = [[57.0, 45.0], [170.0, 20.0], [300.0, 70.0]];
 
-/// A part of the sample's recto as an exhibit of its own: `left`, `top`, width and height in pixels
-/// of its maps, the sheet's shape without its tilt there.
-fn part(whole: &Path, [left, top, width, height]: [u32; 4], to: &Path) {
+/// A part of the sample's recto, drawn with `dpi`, as an exhibit of its own: `left`, `top`, width and height
+/// in pixels of its maps, the sheet's shape without its tilt there.
+pub fn part(whole: &Path, dpi: f64, [left, top, width, height]: [u32; 4], to: &Path) {
     let maps = to.join("maps");
     fs::create_dir_all(&maps).expect("a folder");
     let from = |name: &str| {
@@ -74,7 +74,7 @@ fn part(whole: &Path, [left, top, width, height]: [u32; 4], to: &Path) {
     let pixels: Vec<u16> = heights.iter().map(code).collect();
     recto::maps::encode::save_png_grey16(&maps.join("surface.png"), w, h, &pixels, None)
         .expect("a map");
-    let mm = |px: u32| f64::from(px) * 25.4 / DPI;
+    let mm = |px: u32| f64::from(px) * 25.4 / dpi;
     let manifest = format!(
         "[exhibit]\ntitle = \"A part of the valley\"\n[[drawing]]\nid = \"part\"\n\
          size_mm = [{:?}, {:?}]\n\
@@ -135,7 +135,7 @@ fn bake() {
     let whole = landscape(room.path());
     let exhibit = room.path().join("part");
     let [left, top, width, height] = [CORNER[0], CORNER[1], SIZE[0], SIZE[1]].map(|px| px as u32);
-    part(&whole, [left, top, width, height], &exhibit);
+    part(&whole, DPI, [left, top, width, height], &exhibit);
     let photographed = lamps().into_iter().map(|lamp| (lamp, PHOTOGRAPHED));
     let shown = SHOWN_UNDER.into_iter().map(|lamp| (lamp, ORIGINAL));
     let all = photographed.chain(shown).enumerate();

@@ -24,6 +24,15 @@ pub enum Part {
 }
 
 impl Part {
+    /// Of one of a class's swatches that are too small to be cut: of four, two are learnt from.
+    fn of_swatch(number: usize) -> Self {
+        match number % 4 {
+            0 | 2 => Self::Learning,
+            1 => Self::Choosing,
+            _ => Self::HeldOut,
+        }
+    }
+
     /// Of the block in this column and row: of four in a row two are learnt from, and the next row
     /// is shifted, so that all parts lie all over the swatch.
     fn of_block(column: usize, row: usize) -> Self {
@@ -40,15 +49,20 @@ impl Part {
 pub struct Blocks {
     rect: Crop,
     side: usize,
+    /// What all of it is for, where it is too small to be cut.
+    whole: Option<Part>,
 }
 
 impl Blocks {
-    /// Cuts a swatch, in pixels of what is solved.
-    pub fn new(rect: Crop) -> Self {
-        let shorter = rect.width().min(rect.height());
+    /// Cuts a swatch, in pixels of what is solved: the one of this `number` in its class.
+    pub fn new(rect: Crop, number: usize) -> Self {
+        let [width, height] = [rect.width(), rect.height()];
+        let side = (width.min(height) / ALONG).max(LEAST_PX);
+        let is_small = width.max(height) < 2 * side;
         Self {
             rect,
-            side: (shorter / ALONG).max(LEAST_PX),
+            side,
+            whole: is_small.then(|| Part::of_swatch(number)),
         }
     }
 
@@ -63,6 +77,9 @@ impl Blocks {
         let (left, top) = (left as usize, top as usize);
         if x < left || y < top || x >= right as usize || y >= bottom as usize {
             return None;
+        }
+        if self.whole.is_some() {
+            return self.whole;
         }
         let column = self.along(x - left, self.rect.width())?;
         let row = self.along(y - top, self.rect.height())?;
@@ -98,7 +115,7 @@ mod tests {
             bottom,
         };
         for rect in [rect(63, 45), rect(30, 200), rect(16, 17)] {
-            let blocks = Blocks::new(rect);
+            let blocks = Blocks::new(rect, 0);
             let mut counts = [0; 3];
             for y in 0..210 {
                 for x in 0..80 {

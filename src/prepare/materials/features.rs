@@ -13,6 +13,8 @@ use crate::prepare::{
 
 /// How many features a place has.
 pub const FEATURES: usize = 7;
+/// So many of them are a place's own; the others tell of its surroundings.
+pub const OWN: usize = 5;
 /// How far in pixels a feature looks around.
 pub const REACH: usize = 2;
 /// Names of the features, in their order.

@@ -6,6 +6,7 @@
 //! | swatches → places to learn from, to choose by, to be judged by | [`blocks`] |
 //! | a small network, by Levenberg and Marquardt's method | [`network`] |
 //! | what it has to beat: a linear discriminant | [`discriminant`] |
+//! | which of them does better, and how often each class is met | [`ways`] |
 //! | what is taken for what | [`confusion`] |
 //! | classes → a picture with a legend | [`legend`] |
 
@@ -15,8 +16,7 @@ pub mod discriminant;
 pub mod features;
 pub mod legend;
 pub mod network;
-
-use std::fmt;
+pub mod ways;
 
 use rayon::prelude::*;
 
@@ -25,7 +25,7 @@ use self::{
     confusion::Confusion,
     discriminant::Discriminant,
     features::{Features, Seen},
-    network::Network,
+    ways::{Classifier, Way},
 };
 use super::capture::Crop;
 use crate::optics::medium::MediumId;
@@ -34,36 +34,16 @@ use crate::optics::medium::MediumId;
 const LEARNT: usize = 500;
 /// Places of a class that choose or judge, at most.
 const JUDGED: usize = 2000;
-/// Starts of the network, of which the best is kept.
-const STARTS: u64 = 2;
 /// Shares of all places, from the darkest, between which bare paper is looked for where no swatch
 /// shows it: as `maps::bare_albedo` does.
 const PAPER: [f64; 2] = [0.6, 0.9];
 /// How much farther from its class than nearly all of its swatch a place is unlike it, in squares.
 const UNLIKE: f64 = 2.0;
 
-/// A way to tell classes apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Fisher's linear discriminant.
-    Discriminant,
-    /// A network with one hidden layer, fitted by Levenberg and Marquardt's method.
-    Network,
-}
-
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Discriminant => "linear discriminant",
-            Self::Network => "network",
-        })
-    }
-}
-
-/// How a method did.
+/// How a way did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    pub method: Method,
+    pub way: Way,
     /// Mean share of each class's places that it found, of those it was chosen by.
     pub choosing: f64,
     /// Of places that had no say before.
@@ -79,9 +59,9 @@ pub struct Materials {
     pub paper_shown: bool,
     /// How many places of each class were learnt from.
     pub learnt: Vec<usize>,
-    /// All methods.
+    /// All ways.
     pub trials: Vec<Trial>,
-    pub chosen: Method,
+    pub chosen: Way,
     /// The share of the side that each class has.
     pub coverage: Vec<f64>,
     /// The share of the side that is like no swatch.
@@ -89,9 +69,9 @@ pub struct Materials {
 }
 
 impl Materials {
-    /// How often the chosen method took one class for another, on held-out places.
+    /// How often the chosen way took one class for another, on held-out places.
     pub fn confusion(&self) -> Option<&Confusion> {
-        let chosen = self.trials.iter().find(|trial| trial.method == self.chosen);
+        let chosen = self.trials.iter().find(|trial| trial.way == self.chosen);
         chosen.map(|trial| &trial.held_out)
     }
 }
@@ -129,41 +109,35 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     let held_out = places.thinned(Part::HeldOut, JUDGED);
     let counts = |class| learning.iter().filter(|(_, of)| *of == class).count();
     let learnt: Vec<usize> = (0..media.len()).map(counts).collect();
+    // Its distances tell places that are like no swatch, whatever tells classes apart.
     let discriminant = Discriminant::fit(&learning, media.len())?;
-    let networks: Vec<Network> = (0..STARTS)
-        .into_par_iter()
-        .map(|seed| Network::fit(&learning, media.len(), seed))
-        .collect();
-    let judge = |class: &dyn Fn(&Features) -> usize, by: &[(Features, usize)]| {
-        Confusion::of(by.iter().map(|(f, is)| (*is, class(f))), media.len())
-    };
-    let accuracy = |network: &Network| judge(&|f| network.class(f), &choosing).accuracy();
-    let network =
-        networks
-            .into_iter()
-            .reduce(|best, next| match accuracy(&next) > accuracy(&best) {
-                true => next,
-                false => best,
-            })?;
-    let trial = |method, class: &dyn Fn(&Features) -> usize| Trial {
-        method,
-        choosing: judge(class, &choosing).accuracy(),
-        held_out: judge(class, &held_out),
-    };
-    let trials = vec![
-        trial(Method::Discriminant, &|f| discriminant.class(f)),
-        trial(Method::Network, &|f| network.class(f)),
-    ];
-    // Of equals the simpler.
-    let chosen = match trials[1].choosing > trials[0].choosing {
-        true => Method::Network,
-        false => Method::Discriminant,
-    };
     let limits = limits(&discriminant, &learning, media.len());
-    let class_of = |features: &Features| match chosen {
-        Method::Discriminant => discriminant.class(features),
-        Method::Network => network.class(features),
-    };
+    let fitted: Vec<Option<Classifier>> = Way::ALL
+        .into_par_iter()
+        .map(|way| Classifier::fit(way, &learning, &choosing, media.len()))
+        .collect();
+    let judged: Vec<(Trial, Classifier)> = fitted
+        .into_iter()
+        .flatten()
+        .map(|one| {
+            let trial = Trial {
+                way: one.way,
+                choosing: one.judged(&choosing).accuracy(),
+                held_out: one.judged(&held_out),
+            };
+            (trial, one)
+        })
+        .collect();
+    let trials: Vec<Trial> = judged.iter().map(|(trial, _)| trial.clone()).collect();
+    // Of equals the simpler.
+    let best = judged
+        .into_iter()
+        .reduce(|best, next| match next.0.choosing > best.0.choosing {
+            true => next,
+            false => best,
+        });
+    let (_, mut chosen) = best?;
+    chosen.meet(&everywhere(seen), &learnt);
     let width = seen.width.max(1);
     let mut classes = vec![0u8; seen.albedo.len()];
     let counts: Vec<Vec<u64>> = classes
@@ -174,7 +148,7 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
             let mut counts = vec![0u64; media.len() + 1];
             for (x, out) in row.iter_mut().enumerate() {
                 let features = seen.at(x, y);
-                let class = class_of(&features);
+                let class = chosen.class(&features);
                 counts[class] += 1;
                 if discriminant.distance(&features, class) > limits[class] {
                     counts[media.len()] += 1;
@@ -195,9 +169,23 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
         paper_shown,
         learnt,
         trials,
-        chosen,
+        chosen: chosen.way,
     };
     Some((classes, materials))
+}
+
+/// What is seen of the whole side, at as many places as are needed.
+fn everywhere(seen: &Seen<'_>) -> Vec<Features> {
+    let step = every(seen.albedo.len());
+    let rows: Vec<usize> = (0..seen.height()).step_by(step).collect();
+    let of_row = |y: &usize| {
+        (0..seen.width)
+            .step_by(step)
+            .map(|x| seen.at(x, *y))
+            .collect()
+    };
+    let rows: Vec<Vec<Features>> = rows.par_iter().map(of_row).collect();
+    rows.concat()
 }
 
 /// How far from each class a place is unlike it.
@@ -219,19 +207,24 @@ fn limits(discriminant: &Discriminant, places: &[(Features, usize)], classes: us
 /// Places whose class is known, by class and what they are for.
 struct Places {
     by_class: Vec<[Vec<Features>; 3]>,
+    /// How many swatches each class has had so far.
+    swatches: Vec<usize>,
 }
 
 impl Places {
     fn new(classes: usize) -> Self {
         Self {
             by_class: vec![<[Vec<Features>; 3]>::default(); classes],
+            swatches: vec![0; classes],
         }
     }
 
     fn add_swatch(&mut self, seen: &Seen<'_>, rect: Crop, class: usize) {
         // A large swatch need not be read whole.
         let step = every(rect.width() * rect.height());
-        let blocks = Blocks::new(rect);
+        let number = self.swatches[class];
+        self.swatches[class] += 1;
+        let blocks = Blocks::new(rect, number);
         for y in (rect.top as usize..rect.bottom as usize).step_by(step) {
             for x in (rect.left as usize..rect.right as usize).step_by(step) {
                 if let Some(part) = blocks.part(x, y) {
@@ -250,7 +243,7 @@ impl Places {
             bottom: seen.height() as u32,
         };
         let step = every(seen.albedo.len());
-        let blocks = Blocks::new(whole);
+        let blocks = Blocks::new(whole, 0);
         let mut found: Vec<(f32, Part, usize, usize)> = Vec::new();
         for y in (0..seen.height()).step_by(step) {
             for x in (0..seen.width).step_by(step) {

@@ -234,11 +234,9 @@ impl Network {
         }
     }
 
-    /// The class of a place.
-    pub fn class(&self, features: &Features) -> usize {
-        let y = self.pass(features).y;
-        let best = y.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-        best.map_or(0, |(class, _)| class)
+    /// How much a place looks like each class; their sum is 1.
+    pub fn shares(&self, features: &Features) -> Vec<f64> {
+        self.pass(features).y
     }
 }
 

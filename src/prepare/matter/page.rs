@@ -8,7 +8,7 @@ use crate::{
     prepare::{
         Report, SideReport,
         capture::{BARE_PAPER, Capture},
-        materials::{Materials, Method, features, legend, network},
+        materials::{Materials, features, legend, network, ways::Method},
     },
 };
 
@@ -139,10 +139,10 @@ pub fn page(side: &SideReport) -> String {
 
 fn of_materials(materials: &Materials) -> String {
     let mut out = format!(
-        "<h3>Materials</h3><p>Told apart by {}, learnt from blocks of the swatches; other blocks \
-         chose between two methods, and others again, of which neither knew, judge them. Bare paper \
-         was learnt {}. {:.2} % of the side are like no swatch (edges of strokes, mostly).</p>\
-         <table><tr><th>Method<th>right where it was chosen<th>right on held-out places",
+        "<h3>Materials</h3><p>Told apart by {}, learnt from blocks of the swatches, and small swatches as a \
+         whole; others chose between four ways, and others again, of which none knew, judge them. A \
+         network then also weighs how often each is met on the sheet. Bare paper was learnt {}. {:.2} % of the side are like no swatch (edges of strokes, mostly).</p>\
+         <table><tr><th>Way<th>right where it was chosen<th>right on held-out places",
         features::NAMES.join(", "),
         match materials.paper_shown {
             true => "from its swatches",
@@ -151,11 +151,17 @@ fn of_materials(materials: &Materials) -> String {
         materials.unlike * 100.0,
     );
     for trial in &materials.trials {
-        let how = match trial.method {
-            Method::Network => format!("network, {} neurons, Levenberg-Marquardt", network::HIDDEN),
-            Method::Discriminant => trial.method.to_string(),
+        let how = match trial.way.method {
+            Method::Network => {
+                format!(
+                    "{} ({} neurons, Levenberg-Marquardt)",
+                    trial.way,
+                    network::HIDDEN
+                )
+            }
+            Method::Discriminant => trial.way.to_string(),
         };
-        let taken = match trial.method == materials.chosen {
+        let taken = match trial.way == materials.chosen {
             true => " (taken)",
             false => "",
         };
