@@ -34,6 +34,8 @@ use crate::{
 const PICTURES: [&str; 6] = ["tif", "tiff", "png", "jpg", "jpeg", "exr"];
 /// No lamp of a dome is nearer to the sheet than this many mm; one that seems to be is in cm.
 const NEAREST_MM: f64 = 30.0;
+/// How far a size may be from the photographs' proportions: it is measured with a ruler.
+const PROPORTIONS: f64 = 0.03;
 
 /// Makes a capture file of an `.lp` file and the photographs that it names.
 pub(super) fn import_lp(file: &Path, out: &Path, known: &Known) -> Result<Imported, ExchangeError> {
@@ -51,26 +53,40 @@ pub(super) fn import_lp(file: &Path, out: &Path, known: &Known) -> Result<Import
     };
     if !(MIN_LAMPS..=MAX_LAMPS).contains(&lamps.len()) {
         let allowed = format!("{MIN_LAMPS} to {MAX_LAMPS} lamps");
-        let remedy = "leave every second lamp out, or photograph under more";
+        let remedy = match lamps.len() > MAX_LAMPS {
+            true => {
+                "leave some of them out, such as every second one, and correct the number above them"
+            }
+            false => "photograph under more lamps",
+        };
         let words = Words::new(format!("{} lamps", lamps.len()), allowed, remedy);
         return Err(whole_file(file, words));
     }
     let own = file.parent().unwrap_or(Path::new(""));
     let folder = known.photographs.as_deref().unwrap_or(own);
-    let mut photographs = Vec::new();
-    for (i, lamp) in lamps.iter().enumerate() {
-        let path = lamp.beside(folder);
-        if path.is_file() {
-            photographs.push(path);
-        } else {
-            let allowed = format!("a photograph in {}", quote(&folder.to_string_lossy()));
-            let remedy = "put the photographs there, or name their folder with --photographs";
-            let found = format!("{}, which is not there", quote(&lamp.file));
-            faulty.fault(
-                format!("lamp {}", i + 1),
-                Words::new(found, allowed, remedy),
-            );
-        }
+    let photographs: Vec<PathBuf> = lamps.iter().map(|lamp| lamp.beside(folder)).collect();
+    let missing: Vec<&str> = lamps
+        .iter()
+        .zip(&photographs)
+        .filter(|(_, path)| !path.is_file())
+        .map(|(lamp, _)| lamp.file.as_str())
+        .collect();
+    if let Some(first) = missing.first() {
+        let found = match missing.len() {
+            1 => format!("{}, which is not there", quote(first)),
+            count => format!(
+                "{count} of {} photographs missing, the first of them {}",
+                lamps.len(),
+                quote(first)
+            ),
+        };
+        let there = match folder.as_os_str().is_empty() {
+            true => "this folder".to_owned(),
+            false => quote(&folder.to_string_lossy()),
+        };
+        let allowed = format!("a photograph of each line in {there}");
+        let remedy = "put the photographs there, or name their folder with --photographs";
+        faulty.fault("", Words::new(found, allowed, remedy));
     }
     faulty.check()?;
     let task = Task {
@@ -322,7 +338,20 @@ impl Task<'_> {
             let words = Words::new("no photographs", "one for each lamp", "add them");
             whole_file(self.file, words)
         })?;
-        let width = f64::from(maps::probe(first)?.size[0]);
+        let [width, height] = maps::probe(first)?.size.map(f64::from);
+        if let Some([across, down]) = self.known.size_mm
+            && ((width / height) / (across / down) - 1.0).abs() > PROPORTIONS
+        {
+            let words = Words::new(
+                format!("--size-mm {across}x{down} of photographs of {width} × {height} pixels"),
+                "what the photographs show, all of it, in their proportions",
+                format!(
+                    "write {across}x{:.1}, or measure again",
+                    across * height / width
+                ),
+            );
+            return Err(whole_file(self.file, words));
+        }
         let shown = self.known.size_mm.map(|size| size[0]).or(self.shown_mm);
         let mm_per_px = shown.map(|mm| (mm / width * 1e6).round() / 1e6);
         Ok(mm_per_px.unwrap_or_else(|| {

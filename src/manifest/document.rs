@@ -333,12 +333,25 @@ impl<'t> Document<'t> {
         faults
     }
 
+    /// Whether a text processor's quotation marks stand in the line of an error.
+    fn has_curly_quotes(&self, error: &Error) -> bool {
+        let at = error.span().map_or(0, |span| span.start);
+        let at = self.text.floor_char_boundary(at);
+        let start = self.text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+        let line = self.text[start..].lines().next().unwrap_or_default();
+        line.contains(['“', '”', '„', '‘', '’', '«', '»'])
+    }
+
     fn syntax_remedy(&self, error: &Error) -> &'static str {
         let message = error.message();
         if message.contains("duplicate key") {
             "write each key once, or begin a new [[…]] table"
         } else if message.contains("leading zero") {
             "put what begins with 0 and is no number, such as a PIN, in quotation marks"
+        } else if message.contains("escaped value") {
+            "write paths with / instead of \\, or in single quotation marks"
+        } else if self.has_curly_quotes(error) {
+            "write straight quotation marks: \" instead of “ and ”"
         } else if error
             .span()
             .is_some_and(|span| span.start >= self.text.trim_end().len())

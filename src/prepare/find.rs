@@ -13,7 +13,7 @@ use super::{
     PrepareError,
     capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots},
     colour::{
-        chart::{ChartError, colours, colours_unclipped},
+        chart::{ChartError, MOST_OFF, colours, colours_unclipped},
         correct::{self, Fitted},
     },
     flat_field::FlatField,
@@ -283,5 +283,12 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
         .map_err(refused)?;
     }
     let fitted = correct::fit(&measured, lab, capture.illuminant.xy());
-    fitted.map(Some).ok_or_else(|| refused(ChartError::Flat))
+    match fitted {
+        None => Err(refused(ChartError::Flat)),
+        // NaN is no colour of the chart's either.
+        Some(fitted) if !(fitted.off() <= MOST_OFF) => {
+            Err(refused(ChartError::Unlike(fitted.off())))
+        }
+        Some(fitted) => Ok(Some(fitted)),
+    }
 }

@@ -30,7 +30,7 @@ pub enum FlatFieldError {
     #[error(transparent)]
     File(#[from] StackError),
     #[error(
-        "{path}: the grey card is saturated on {share:.1} % of the picture; photograph it with less exposure"
+        "{path}: what shows the light alone, a grey card or a light table, is saturated on {share:.1} % of the picture; photograph it with less exposure"
     )]
     Saturated { path: String, share: f64 },
     #[error("{path}: around column {x}, row {y} the grey card has {percent:.1} % of its brightest light, where at least {least} % are needed; it has to fill the whole picture", least = DARKEST * 100.0)]

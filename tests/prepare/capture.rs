@@ -33,8 +33,13 @@ corners_px = [[10, 10], [50, 10], [50, 30], [10, 30]]
 /// A curator's patience.
 const MOST_LINES: usize = 20;
 
+/// Grey, another one for each name.
 fn picture(path: &Path, [width, height]: [u32; 2]) {
-    let pixels = vec![20_000; (width * height) as usize];
+    let name = path.file_name().expect("a name").as_encoded_bytes();
+    let grey = name
+        .iter()
+        .fold(20_000u16, |grey, byte| grey + u16::from(*byte) % 32);
+    let pixels = vec![grey; (width * height) as usize];
     encode::save_png_grey16(path, width, height, &pixels, None).expect("written");
 }
 
@@ -136,6 +141,37 @@ fn raw_files_are_refused_with_the_way_to_develop_them() {
 }
 
 #[test]
+fn what_is_there_twice_is_told() {
+    let folder = written(&FILES);
+    let same = fault(folder.path(), &FOUR.replace("\"r3.png\"", "\"r2.png\""));
+    assert!(
+        same.path == "recto.photographs[2]" && same.found.contains("same picture"),
+        "{same}"
+    );
+    // A copy under another name as well.
+    fs::copy(folder.path().join("r1.png"), folder.path().join("r4.png")).expect("a copy");
+    let copied = fault(folder.path(), FOUR);
+    assert_eq!(copied.path, "recto.photographs[3]", "{copied}");
+    let folder = written(&FILES);
+    // One grey card may do for all lamps.
+    let one = FOUR.replace("\"g2.png\", \"g3.png\"", "\"g1.png\", \"g1.png\"");
+    let file = folder.path().join("capture.toml");
+    assert!(Capture::parse(&file, &one).is_ok());
+    let twice = FOUR.replace("180, 270]", "180, 180]");
+    let (_, warnings) = Capture::parse(&file, &twice).expect("a capture");
+    assert!(
+        warnings.len() == 1
+            && warnings[0]
+                .found
+                .contains("lamp 4 in the direction of lamp 3"),
+        "{warnings:?}"
+    );
+    fs::write(folder.path().join("r2.png"), b"").expect("an empty file");
+    let empty = fault(folder.path(), FOUR);
+    assert!(empty.found.contains("an empty file"), "{empty}");
+}
+
+#[test]
 fn lamps_have_to_stand_around_the_sheet() {
     let folder = written(&FILES);
     let told = |text: &str| {
@@ -150,7 +186,7 @@ fn lamps_have_to_stand_around_the_sheet() {
         .replace(", \"g3.png\", \"g4.png\"", "")
         .replace(", \"r3.png\", \"r4.png\"", "");
     assert!(
-        told(&two).contains("found 2 lamps; allowed: 3 to 200 lamps"),
+        told(&two).contains("found 2 lamps; allowed: 3 to 500 lamps"),
         "{}",
         told(&two)
     );
@@ -205,7 +241,7 @@ fn rulers_swatches_and_tables_are_checked() {
     assert!(fault(folder.path(), &short).path.ends_with("ruler"));
 
     let swatch = "\n[[swatch]]\nmedium = \"iron-gall-ink\"\nrect_px = [1, 2, 9, 8]\n\
-                  [[swatch]]\nmedium = \"bare-paper\"\nrect_px = [1, 2, 9, 8]\n";
+                  [[swatch]]\nmedium = \"bare-paper\"\nrect_px = [11, 2, 19, 8]\n";
     let text = format!("{FOUR}{swatch}");
     let (capture, _) = Capture::parse(&file, &text).expect("a capture");
     assert!(capture.swatches[0].medium.is_some() && capture.swatches[1].medium.is_none());
@@ -217,6 +253,19 @@ fn rulers_swatches_and_tables_are_checked() {
             .path
             .contains("swatch[0].rect_px")
     );
+
+    let over = text.replace("[11, 2, 19", "[8, 2, 19");
+    let told = fault(folder.path(), &over);
+    assert!(
+        told.path == "swatch[1].rect_px" && told.found.contains("iron-gall-ink"),
+        "{told}"
+    );
+    let tiny = text.replace("[11, 2, 19, 8]", "[11, 2, 13, 8]");
+    let told = fault(folder.path(), &tiny);
+    assert!(told.found.contains("12 pixels of bare-paper"), "{told}");
+    // Several small ones do as well as a large one.
+    let many = format!("{tiny}[[swatch]]\nmedium = \"bare-paper\"\nrect_px = [30, 2, 38, 8]\n");
+    assert!(Capture::parse(&file, &many).is_ok());
 
     fs::write(folder.path().join("chart.csv"), "50,0,0\n").expect("written");
     let text = format!("{FOUR}file = \"chart.csv\"\n");

@@ -268,11 +268,17 @@ fn a_capture_without_corners_has_its_colours_corrected() {
         "chart.png",
         &Scene::of(chart([400.0, 300.0], 62.0, 187.0, [0.01, 0.0])),
     );
+    for (i, name) in ["b.png", "c.png"].into_iter().enumerate() {
+        let [w, h] = Scene::default().size;
+        let pixels = vec![[20_000 + i as u16; 3]; w * h];
+        encode::save_png_rgb16(&path.join(name), w as u32, h as u32, &pixels, None)
+            .expect("a photograph");
+    }
     let text = |corners: &str| {
         format!(
             "id = \"chart\"\nencoding = \"linear\"\nscale.mm_per_px = 0.1\n\
              lamps = {{ azimuth_deg = [0, 120, 240], elevation_deg = 45 }}\n\
-             recto.photographs = [\"chart.png\", \"chart.png\", \"chart.png\"]\n\
+             recto.photographs = [\"chart.png\", \"b.png\", \"c.png\"]\n\
              chart = {{ photograph = \"chart.png\"{corners} }}\n"
         )
     };
@@ -290,6 +296,17 @@ fn a_capture_without_corners_has_its_colours_corrected() {
     );
     // The lamp's fall-off remains, as no grey card says it.
     assert!(mean(&found.after) < 3.0 && mean(&found.after) < 0.5 * mean(&found.before));
+    // Corners in another order are refused, and do not make paper red.
+    let known = corners(&chart([400.0, 300.0], 62.0, 187.0, [0.01, 0.0]));
+    let in_order = |order: [usize; 4]| {
+        let list = order.map(|i| format!("[{:.2}, {:.2}]", known[i].x, known[i].y));
+        fitted(&format!(", corners_px = [{}]", list.join(", ")))
+    };
+    assert!(in_order([0, 1, 2, 3]).expect("a chart").is_some());
+    for order in [[1, 0, 3, 2], [2, 3, 0, 1], [3, 2, 1, 0]] {
+        let error = in_order(order).expect_err("another order").to_string();
+        assert!(error.contains("dark skin, bluish green"), "{error}");
+    }
     write(
         "chart.png",
         &Scene {

@@ -7,8 +7,8 @@ use super::folder;
 fn parsed(scale: &str, lamps: &str) -> Result<Capture, Vec<Fault>> {
     let folder = folder();
     let names: Vec<String> = (0..4).map(|i| format!("r{i}.png")).collect();
-    for name in &names {
-        let pixels = vec![20_000; 640 * 480];
+    for (i, name) in names.iter().enumerate() {
+        let pixels = vec![20_000 + i as u16; 640 * 480];
         encode::save_png_grey16(&folder.path().join(name), 640, 480, &pixels, None)
             .expect("written");
     }

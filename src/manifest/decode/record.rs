@@ -43,9 +43,15 @@ pub(crate) fn decode_record<T: Record + Decode>(
 /// As [`Decode::to_add`]: the table's header and the keys that it cannot be without.
 pub(crate) fn table_to_add<T: Record>(trail: &Trail) -> String {
     let header = format!("add [{}]", trail.header());
-    match &T::KEYS[..T::REQUIRED] {
-        [] => header,
-        keys => format!("{header} with {}", keys.join(", ")),
+    let required = T::KEYS[..T::REQUIRED].iter().map(|key| (*key).to_owned());
+    let chosen = T::RULES.iter().filter_map(|rule| match rule {
+        Rule::ExactlyOne(keys) => Some(keys.join(" or ")),
+        _ => None,
+    });
+    let keys: Vec<String> = required.chain(chosen).collect();
+    match keys.is_empty() {
+        true => header,
+        false => format!("{header} with {}", keys.join(", ")),
     }
 }
 

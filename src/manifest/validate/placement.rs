@@ -299,7 +299,9 @@ impl Validator<'_, '_> {
 
     fn warn_of_proportions(&mut self, sheet_mm: DVec2, pixels: DVec2, picture: &Trail) {
         let ratio = (pixels.x / pixels.y) / (sheet_mm.x / sheet_mm.y);
-        if (ratio - 1.0).abs() <= ASPECT_TOLERANCE {
+        // A small picture's sides are rounded to whole pixels.
+        let rounded = pixels.min_element().max(1.0).recip();
+        if (ratio - 1.0).abs() <= ASPECT_TOLERANCE.max(rounded) {
             return;
         }
         let (percent, compared) = if ratio > 1.0 {

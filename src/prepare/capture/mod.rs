@@ -39,7 +39,7 @@ pub const CAPTURE: &str = "capture.toml";
 /// The fewest lamps that tell where a surface faces.
 pub const MIN_LAMPS: usize = 3;
 /// The most lamps of one capture.
-pub const MAX_LAMPS: usize = 200;
+pub const MAX_LAMPS: usize = 500;
 /// What a swatch says of a place where nothing is drawn.
 pub const BARE_PAPER: &str = "bare-paper";
 

@@ -94,7 +94,7 @@ record! {
 }
 
 record! {
-    /// Where the lamps stood, in the order of the photographs: 3 to 200 of them.
+    /// Where the lamps stood, in the order of the photographs: 3 to 500 of them.
     pub struct RawLamps {
         required {}
         optional {

@@ -18,6 +18,10 @@ const CLIPPED_SHARE: f64 = 0.01;
 /// The fewest pixels of a patch that its colour is read from.
 const FEWEST: usize = 16;
 
+/// Mean ΔE00 of left-out patches above which they are not the chart's, or in another order: the worst of cameras
+/// under the worst of lamps is below it.
+pub const MOST_OFF: f64 = 12.0;
+
 /// A patch of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
@@ -130,13 +134,20 @@ pub enum ChartError {
         "the chart's patches have one hue: it lies under coloured light, or is no chart; correct its corners or the photograph"
     )]
     Flat,
+    #[error(
+        "the patches are ΔE00 {0:.0} from the chart's colours in the mean, where a camera's are below {MOST_OFF}; \
+         write the corners in the order dark skin, bluish green, black, white, or correct the chart's table"
+    )]
+    Unlike(f64),
     #[error("the patch \"{}\" is covered, shines or is not of the chart's colours; photograph the chart again, or write the middles of its corner patches as corners_px", name(*.0))]
     Covered(usize),
     #[error(
         "more than one chart is seen, or it may lie in several ways; write the middles of its corner patches as corners_px"
     )]
     Several,
-    #[error("no chart was found; write the middles of its corner patches as corners_px")]
+    #[error(
+        "no chart was found, or it is over-exposed; write the middles of its corner patches as corners_px"
+    )]
     NotFound,
 }
 

@@ -125,6 +125,14 @@ pub struct Fitted {
     pub left_out: Vec<(Model, f64)>,
 }
 
+impl Fitted {
+    /// Mean ΔE00 of left-out patches, of the model that does better.
+    pub fn off(&self) -> f64 {
+        let each = self.left_out.iter().map(|(_, off)| *off);
+        each.fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// Fits both models to `measured` linear colours of patches whose CIELAB under D50 is `lab`, and
 /// takes the one that predicts left-out patches better. ΔE00 is taken under the white `xy`.
 ///

@@ -59,7 +59,7 @@ pub fn read(text: &str) -> Result<Vec<LpLamp>, Vec<LpFault>> {
         .lines()
         .enumerate()
         .map(|(i, line)| (i + 1, line.trim()))
-        .filter(|(_, line)| !line.is_empty());
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let count = match lines.next() {
         Some((line, first)) => match first.parse::<usize>() {
             Ok(count) => count,
@@ -116,7 +116,9 @@ fn lamp(row: &str) -> Result<LpLamp, &'static str> {
     }
     let direction = DVec3::from(numbers);
     if (direction.length() - 1.0).abs() > LENGTH {
-        return Err("directions have length 1");
+        return Err(
+            "write a direction, whose squares sum to 1; places in mm go into position_mm of a capture file",
+        );
     }
     if direction.z <= 0.0 {
         return Err("the lamp would be behind the sheet: the third number is above 0");
@@ -150,5 +152,7 @@ mod tests {
         assert_eq!(read("2\na.jpg 0 0 1").expect_err("too few")[0].line, 2);
         assert_eq!(read("").expect_err("nothing")[0].line, 1);
         assert_eq!(read("x").expect_err("no number")[0].line, 1);
+        let lamps = read("# a dome\n1\na.jpg 0 0 1\n# its end\n").expect("a lamp");
+        assert_eq!(lamps.len(), 1);
     }
 }

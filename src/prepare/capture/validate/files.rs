@@ -1,8 +1,9 @@
 //! Files of a capture: there, readable, no camera's raw files, and of one size.
 
 use std::{
+    collections::HashMap,
     fs::File,
-    io::Read,
+    io::{self, BufReader, Read, Seek, SeekFrom},
     path::{Path, PathBuf},
 };
 
@@ -95,6 +96,35 @@ impl Validator<'_, '_> {
         first.map(|(size, _)| size).filter(|_| sound)
     }
 
+    /// Whether no picture is there twice: each is under a lamp of its own. Of a grey card one may do for all.
+    pub(super) fn all_differ(&mut self, files: &[(&PathBuf, Trail)]) -> bool {
+        let mut alike: HashMap<(u64, Vec<u8>), Vec<usize>> = HashMap::new();
+        let mut sound = true;
+        for (i, (path, trail)) in files.iter().enumerate() {
+            // One that cannot be read has its own fault.
+            let Ok(print) = print_of(path) else { continue };
+            let earlier = alike.entry(print).or_default();
+            let same = earlier
+                .iter()
+                .find(|other| are_same(files[**other].0, path).unwrap_or(false));
+            if let Some(other) = same {
+                let words = Words::new(
+                    format!(
+                        "{}, the same picture as {}",
+                        quote(&path.to_string_lossy()),
+                        files[*other].0.display()
+                    ),
+                    "a photograph of its own for each lamp",
+                    "name the one that was taken under this lamp, or leave the lamp out",
+                );
+                self.report.fault(trail, words);
+                sound = false;
+            }
+            earlier.push(i);
+        }
+        sound
+    }
+
     /// The size of one picture in pixels.
     fn size(&mut self, path: &Path, trail: &Trail) -> Option<[u32; 2]> {
         let shown = quote(&path.to_string_lossy());
@@ -120,6 +150,14 @@ impl Validator<'_, '_> {
                 };
                 (found, "correct the path, from the capture file's folder")
             }
+            _ if std::fs::metadata(path).is_ok_and(|data| data.len() == 0) => (
+                format!("{shown}, an empty file"),
+                "copy or export this photograph again",
+            ),
+            MapError::UnknownFormat { .. } => (
+                format!("{shown}, which is none of these"),
+                "export this photograph as one of these",
+            ),
             _ => (error.to_string(), "export this photograph again"),
         };
         let words = Words::new(found, "TIFF, PNG, JPEG or OpenEXR", remedy);
@@ -149,4 +187,28 @@ pub(super) fn is_raw(path: &Path) -> bool {
                 | [b'F', b'O', b'V', b'b', ..]
                 | [0, b'M', b'R', b'M', ..]
         )
+}
+
+/// How much of a file's end two files are told apart by, before they are compared whole.
+const PRINT_BYTES: u64 = 4096;
+
+/// The length of a file and its end: two photographs hardly ever have both in common.
+fn print_of(path: &Path) -> io::Result<(u64, Vec<u8>)> {
+    let mut file = File::open(path)?;
+    let length = file.seek(SeekFrom::End(0))?;
+    file.seek(SeekFrom::Start(length.saturating_sub(PRINT_BYTES)))?;
+    let mut end = Vec::new();
+    file.take(PRINT_BYTES).read_to_end(&mut end)?;
+    Ok((length, end))
+}
+
+/// Whether two files of one length hold the same.
+fn are_same(a: &Path, b: &Path) -> io::Result<bool> {
+    let [a, b] = [File::open(a)?, File::open(b)?].map(BufReader::new);
+    let mut pairs = a.bytes().zip(b.bytes());
+    let differs = |(a, b): (io::Result<u8>, io::Result<u8>)| match (a, b) {
+        (Ok(a), Ok(b)) => a != b,
+        _ => true,
+    };
+    Ok(!pairs.any(differs))
 }

@@ -182,6 +182,9 @@ impl Validator<'_, '_> {
                 sound &= self.inside(circle.map(|px| px.0), size, &trail.key("circle_px"));
             }
             sound &= size.is_some();
+            let named = files.iter().zip(list.iter());
+            let named: Vec<_> = named.map(|(path, (i, _))| (path, key.index(i))).collect();
+            sound &= self.all_differ(&named);
             photographs = files;
         }
         let circle = raw.circle_px.map(|px| {
@@ -233,7 +236,12 @@ impl Validator<'_, '_> {
             let words = Words::new(
                 format!("{count} lamps"),
                 format!("{MIN_LAMPS} to {MAX_LAMPS} lamps"),
-                "photograph the sheet under lamps from at least three sides, better from four",
+                match count > MAX_LAMPS {
+                    true => "leave some of them out, such as every second one",
+                    false => {
+                        "photograph the sheet under lamps from at least three sides, better from four"
+                    }
+                },
             );
             self.report.fault(trail, words);
             sound = false;
@@ -248,6 +256,7 @@ impl Validator<'_, '_> {
                 self.report.fault(trail, words);
                 sound = false;
             }
+            self.apart(&directions, trail);
         }
         if let (Places::Sphere(sphere), Some(recto)) = (&places, recto)
             && let (Some(circle), true) = (sphere.circle, sphere.photographs.is_empty())
@@ -261,6 +270,24 @@ impl Validator<'_, '_> {
             count,
             light: light?,
         })
+    }
+
+    /// Two lamps that stand in one place are probably one that was written twice.
+    fn apart(&mut self, directions: &[DVec3], trail: &Trail) {
+        /// No two lamps stand so near to each other.
+        const SAME_RAD: f64 = 1e-3;
+        for (i, direction) in directions.iter().enumerate() {
+            let earlier = &directions[..i];
+            let same = |other: &DVec3| other.angle_between(*direction) < SAME_RAD;
+            if let Some(other) = earlier.iter().position(same) {
+                let words = Words::new(
+                    format!("lamp {} in the direction of lamp {}", i + 1, other + 1),
+                    "lamps each in a direction of its own",
+                    "correct its place, or leave one of the two out with its photograph",
+                );
+                self.report.warn(trail, words);
+            }
+        }
     }
 
     fn light(

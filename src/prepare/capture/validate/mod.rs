@@ -156,6 +156,13 @@ impl Validator<'_, '_> {
         let all = all.chain(ambient.iter().map(|path| (path, ambient_trail.clone())));
         let all: Vec<(&PathBuf, Trail)> = all.collect();
         let size = self.same_size(&all, None)?;
+        let photographed: Vec<(&PathBuf, Trail)> = photographs
+            .iter()
+            .map(|(path, trail)| (path, trail.clone()))
+            .collect();
+        if !self.all_differ(&photographed) {
+            return None;
+        }
         let holes = raw.photographs.as_ref().is_some_and(List::has_holes);
         let crop = match raw.crop_px {
             Some(edges) => self.rect(edges, size, &trail.key("crop_px"))?,
@@ -257,6 +264,14 @@ impl Validator<'_, '_> {
         let range_um = raw.compare_range_um.map(|range| range.map(|um| um.0));
         if !is_model {
             self.same_size(&[(&path, key)], None)?;
+        } else if !path.is_file() {
+            let words = Words::new(
+                format!("{}, which is not there", quote(&path.to_string_lossy())),
+                "a .glb file, or a picture of heights",
+                "correct the path, from the capture file's folder",
+            );
+            self.report.fault(&key, words);
+            return None;
         } else if let Err(error) = load_gltf(&path) {
             let words = Words::new(
                 error.to_string(),
@@ -358,10 +373,61 @@ impl Validator<'_, '_> {
             let medium = self.medium(swatch, &trail);
             let rect = shots.and_then(|shots| self.on_sheet(swatch.rect_px, shots, &trail));
             if let (Some(medium), Some(rect)) = (medium, rect) {
-                swatches.push(Swatch { side, medium, rect });
+                let swatch = Swatch { side, medium, rect };
+                self.one_medium(&swatch, &swatches, &trail);
+                swatches.push(swatch);
             }
         }
+        self.enough(&swatches, trail);
         swatches
+    }
+
+    /// A place is drawn with one medium.
+    fn one_medium(&mut self, swatch: &Swatch, earlier: &[Swatch], trail: &Trail) {
+        let meets = |other: &&Swatch| {
+            let (a, b) = (swatch.rect, other.rect);
+            other.side == swatch.side
+                && other.medium != swatch.medium
+                && a.left.max(b.left) < a.right.min(b.right)
+                && a.top.max(b.top) < a.bottom.min(b.bottom)
+        };
+        if let Some(other) = earlier.iter().find(meets) {
+            let words = Words::new(
+                format!(
+                    "a place that another swatch says is {}",
+                    other.medium.map_or(BARE_PAPER, MediumId::name)
+                ),
+                "swatches of different media apart",
+                "correct one of the two",
+            );
+            self.report.fault(&trail.key("rect_px"), words);
+        }
+    }
+
+    /// Each medium of a side has enough pixels to be learnt from.
+    fn enough(&mut self, swatches: &[Swatch], trail: &Trail) {
+        /// Half of them are learnt from, and the others choose and judge.
+        const FEWEST_PX: usize = 40;
+        let mut told = Vec::new();
+        for (i, Swatch { side, medium, .. }) in swatches.iter().enumerate() {
+            let all = swatches
+                .iter()
+                .filter(|other| (other.side, other.medium) == (*side, *medium));
+            let pixels: usize = all
+                .map(|swatch| swatch.rect.width() * swatch.rect.height())
+                .sum();
+            if pixels >= FEWEST_PX || told.contains(&(*side, *medium)) {
+                continue;
+            }
+            told.push((*side, *medium));
+            let name = medium.map_or(BARE_PAPER, MediumId::name);
+            let words = Words::new(
+                format!("{pixels} pixels of {name}"),
+                format!("{FEWEST_PX} pixels or more of each medium, better a few hundred"),
+                "enlarge its swatches, or add some",
+            );
+            self.report.fault(&trail.index(i).key("rect_px"), words);
+        }
     }
 
     /// The rectangle of a swatch, which has to lie on what is the sheet.
