@@ -38,6 +38,8 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -162,19 +164,22 @@ def applied(mutant):
     return text[:at] + new + text[at + len(old):]
 
 
-def generate(work, name="crate", level=1):
-    """The crate of the physics alone, optimised to `level`."""
+def generate(work, name="crate", level=1, laid=(), more=""):
+    """The crate of the physics alone, optimised to `level`, but for the sources that are `laid` by
+    others; `more` is in its library."""
     crate = work / name
     (crate / "bevy/src").mkdir(parents=True, exist_ok=True)
     (crate / "src/sheet").mkdir(parents=True, exist_ok=True)
-    for module in ("optics", "reference"):
-        shutil.copytree(ROOT / "src" / module, crate / "src" / module, dirs_exist_ok=True)
-    # Whole pictures need an exhibit and its maps; no test here asks for them.
-    walk = (ROOT / "src/reference/mod.rs").read_text()
-    write(crate / "src/reference/mod.rs", re.sub(r"pub (mod|use) picture[^\n]*\n", "", walk))
-    shutil.rmtree(crate / "src/reference/picture", ignore_errors=True)
-    for module in ("units", "colour"):
-        shutil.copy(ROOT / f"src/{module}.rs", crate / f"src/{module}.rs")
+    sources = [path for module in ("optics", "reference")
+               for path in sorted((ROOT / "src" / module).rglob("*.rs"))]
+    for source in [*sources, ROOT / "src/units.rs", ROOT / "src/colour.rs"]:
+        path, text = str(source.relative_to(ROOT)), source.read_text()
+        # Whole pictures need an exhibit and its maps; no test here asks for them.
+        if path == "src/reference/mod.rs":
+            text = re.sub(r"pub (mod|use) picture[^\n]*\n", "", text)
+        if path not in laid and not path.startswith("src/reference/picture"):
+            (crate / path).parent.mkdir(parents=True, exist_ok=True)
+            write(crate / path, text)
     # What of the narrowing needs no manifest and no maps.
     uniform = (ROOT / "src/sheet/uniform.rs").read_text().split("/// Twin of `Paper`.")[0]
     uniform = re.sub(r" {4}manifest::\{\n.*?\n {4}\},\n| {4}(?:manifest|maps)::[^\n]*\n"
@@ -194,7 +199,7 @@ pub mod sheet {{
     pub const PAPER_BASELINES: &str = include_str!("{shaders}/paper_baselines.wgsl");
     pub const PAPER_MEDIA: &str = include_str!("{shaders}/paper_media.wgsl");
 }}
-''')
+''' + more)
     write(crate / "bevy/src/lib.rs",
           "pub mod render { pub mod render_resource { pub use encase; pub use encase::ShaderType; } }\n")
     write(crate / "bevy/Cargo.toml", '''
@@ -219,19 +224,14 @@ edition = "2024"
 bevy = {{ path = "bevy" }}
 encase = "0.12"
 glam = {{ version = "0.32", features = ["encase"] }}
-oxilangtag = "0.1"
 palette = {{ version = "0.7", default-features = false, features = ["std"] }}
 pollster = "0.4"
 rand = {{ version = "0.10", default-features = false }}
 rand_distr = {{ version = "0.6", default-features = false }}
 rayon = "1.12"
-schemars = "1.2"
 serde = {{ version = "1", features = ["derive"] }}
-strsim = "0.11"
 thiserror = "2"
 wgpu = {{ version = "29", default-features = false, features = ["vulkan", "wgsl", "std", "parking_lot"] }}
-[dev-dependencies]
-proptest = "1.12"
 {tests}
 [profile.release]
 opt-level = {level}
@@ -367,12 +367,14 @@ class Suite:
             print(f"sound {target[-1]}: {took:.1f} s", flush=True)
             self.longest_s[target[-1]] = LONGEST_TIMES * took + LONGEST_MORE_S
 
-    def judge(self, **more):
-        for target in TARGETS:
+    def judge(self, path, **more):
+        """Of a mutant in `path`, whose own unit tests come first."""
+        own = [f"optics::{Path(path).stem}::"]
+        for target, only in [(["--lib"], own), *((target, []) for target in TARGETS)]:
             binary = self.built(target)
             if not binary:
                 return "invalid", ""
-            code, output = until_a_failure([binary, *arguments_of(target)[1:]],
+            code, output = until_a_failure([binary, *only, *arguments_of(target)[1:]],
                                            {**self.env, **more}, self.crate,
                                            self.longest_s[target[-1]])
             if code != 0:
@@ -387,27 +389,29 @@ class Alone(Suite):
         path = self.crate / mutant[0]
         path.write_text(applied(mutant))
         try:
-            return self.judge()
+            return self.judge(mutant[0])
         finally:
             path.write_text((ROOT / mutant[0]).read_text())
 
 
 class Switched(Suite):
-    """All of `wanted` in one build, and which of them have their switch."""
+    """All of `wanted` in one build, and which of them have their switch. `every` numbers them."""
 
-    def __init__(self, work, env, wanted):
-        super().__init__(generate(work, "switched", 2), env)
-        self.number = {identity(mutant): number for number, mutant in enumerate(wanted, 1)}
+    def __init__(self, work, env, wanted, every):
+        self.paths = sorted({mutant[0] for mutant in wanted})
+        super().__init__(generate(work, "switched", 2, self.paths, SWITCH), env)
+        self.number = {identity(mutant): number for number, mutant in enumerate(every, 1)}
         self.wanted = wanted
-        self.tool = work / "switches/release/switches"
-        code, output = run(["cargo", "build", "--release", "--offline"],
+        self.tool = work / "switches/debug/switches"
+        code, output = run(["cargo", "build", "--offline"],
                            dict(env, CARGO_TARGET_DIR=str(work / "switches")),
                            ROOT / "tests/mutation/switches")
         if code != 0:
             sys.exit(output)
-        library = self.crate / "src/lib.rs"
-        write(library, library.read_text() + SWITCH)
-        refused = set()
+        # Known from an earlier build.
+        known = work / "refused"
+        names = known.read_text().split("\n") if known.exists() else []
+        refused = {self.number[name] for name in names if name in self.number}
         while True:
             self.behind = self.lay(refused)
             more = self.refused()
@@ -416,6 +420,8 @@ class Switched(Suite):
             if more <= refused:
                 sys.exit(f"the compiler refuses more than switches, see {self.crate}")
             refused |= more
+            known.write_text("\n".join(name for name, number in self.number.items()
+                                       if number in refused))
             print(f"without a switch, as they do not compile behind one: {len(refused)}", flush=True)
         # Built once.
         self.binaries = {target[-1]: executable(self.crate, self.env, target) for target in TARGETS}
@@ -424,31 +430,31 @@ class Switched(Suite):
         return self.binaries[target[-1]]
 
     def judged(self, mutant):
-        return self.judge(RECTO_MUTANT=str(self.number[identity(mutant)]))
+        return self.judge(mutant[0], RECTO_MUTANT=str(self.number[identity(mutant)]))
 
     def lay(self, refused):
         """Writes the sources with their switches; the numbers that have one."""
         behind = set()
-        for path in sorted({mutant[0] for mutant in self.wanted}):
+        for path in self.paths:
             text = (ROOT / path).read_text()
             lines = []
             for mutant in self.wanted:
                 number = self.number[identity(mutant)]
                 if mutant[0] == path and number not in refused:
                     lines.append(f"{number}\t{len(text[:mutant[3]].encode())}\t{mutant[5]}\n")
-            sites = self.crate / "sites"
+            sites, switched = self.crate / "sites", self.crate / "switched.rs"
             sites.write_text("".join(lines))
-            code, output = run([self.tool, ROOT / path, sites, self.crate / path], self.env, ROOT)
+            code, output = run([self.tool, ROOT / path, sites, switched], self.env, ROOT)
             if code != 0:
                 sys.exit(f"{path}: {output}")
+            write(self.crate / path, switched.read_text())
             behind |= {int(line) for line in output.split()}
         return behind
 
     def refused(self):
         """The innermost switches that the compiler's errors lie in; else those of the same lines,
         or of the same file."""
-        code, output = run(["cargo", "check", "--lib", "--release", "--offline",
-                            "--message-format=json"], self.env, self.crate)
+        code, output = cargo(self.crate, self.env, ["--lib"], "--no-run", "--message-format=json")
         if code == 0:
             return set()
         found = set()
@@ -504,8 +510,9 @@ def interval(caught, count):
     return middle - half, middle + half
 
 
-def judges(language, due, work, env):
-    """(mutant, what judges it) of all that are due."""
+def judges(language, due, chosen, every, work, env):
+    """(mutants, what judges each, whether several at a time) of all that are due of the chosen of
+    all."""
     if not due:
         return
     if language == "wgsl":
@@ -513,21 +520,19 @@ def judges(language, due, work, env):
         code, output = cargo(crate, env, parity, *arguments_of(parity))
         if code != 0:
             sys.exit(f"the sound physics fails its shaders:\n{output[-4000:]}")
-        for mutant in due:
-            yield mutant, lambda mutant: judge_wgsl(mutant, work, crate, env)
+        yield due, lambda mutant: judge_wgsl(mutant, work, crate, env), False
         return
-    switched = Switched(work, env, due)
+    # All that were chosen, so that a run which goes on finds them built.
+    switched = Switched(work, env, chosen, every)
     behind = [mutant for mutant in due if switched.number[identity(mutant)] in switched.behind]
     print(f"{len(behind)} of {len(due)} have a switch", flush=True)
     switched.sound()
-    for mutant in behind:
-        yield mutant, switched.judged
+    yield behind, switched.judged, True
     others = [mutant for mutant in due if mutant not in behind]
     if others:
         alone = Alone(generate(work), env)
         alone.sound()
-        for mutant in others:
-            yield mutant, alone.judged
+        yield others, alone.judged, False
 
 
 def main():
@@ -540,6 +545,8 @@ def main():
     parser.add_argument("--again", action="store_true",
                         help="run the survivors of earlier runs again, after new tests")
     parser.add_argument("--minutes", type=float, help="begin no mutant after so long")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N",
+                        help="judge so many of Rust at a time")
     arguments = parser.parse_args()
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     work = (arguments.work or target / "mutation").resolve()
@@ -568,18 +575,27 @@ def main():
     begun = time.time()
     due = [mutant for mutant in chosen if identity(mutant) not in done
            or arguments.again and done[identity(mutant)]["outcome"] == "survived"]
-    for number, (mutant, judge) in enumerate(judges(arguments.language, due, work, env), 1):
-        if arguments.minutes and time.time() - begun > 60 * arguments.minutes:
-            break
+    number = 0
+
+    def timed(judge, mutant):
         at = time.time()
-        outcome, why = judge(mutant)
-        name = identity(mutant)
-        row = {"mutant": name, "outcome": outcome, "reason": why,
-               "seconds": f"{time.time() - at:.1f}"}
-        done[name] = row
-        with results.open("a", newline="") as file:
-            csv.DictWriter(file, list(row)).writerow(row)
-        print(f"{number}/{len(due)} {name}: {outcome} {why}", flush=True)
+        if arguments.minutes and at - begun > 60 * arguments.minutes:
+            return None
+        return judge(mutant), time.time() - at
+
+    for mutants_of, judge, several in judges(arguments.language, due, chosen, every, work, env):
+        with ThreadPoolExecutor(arguments.jobs if several else 1) as pool:
+            for mutant, judged in zip(mutants_of, pool.map(partial(timed, judge), mutants_of)):
+                number += 1
+                if judged is None:
+                    continue
+                (outcome, why), took = judged
+                name = identity(mutant)
+                row = {"mutant": name, "outcome": outcome, "reason": why, "seconds": f"{took:.1f}"}
+                done[name] = row
+                with results.open("a", newline="") as file:
+                    csv.DictWriter(file, list(row)).writerow(row)
+                print(f"{number}/{len(due)} {name}: {outcome} {why}", flush=True)
     rows = [done[identity(mutant)] for mutant in chosen if identity(mutant) in done]
     count = {outcome: sum(row["outcome"] == outcome for row in rows)
              for outcome in ("caught", "survived", "invalid")}
