@@ -247,8 +247,9 @@ mod tests {
     /// Where a tier knows no films, light crosses the ink of the other side once.
     #[test]
     fn ink_behind_dims_by_the_root_of_what_is_photographed() {
-        let shown = |ink: f64| {
+        let shown = |ink: f64, bare: f64| {
             let mut spot = paper(DVec3::splat(0.7));
+            spot.behind.other_bare = DVec3::splat(bare);
             spot.behind.other = ink * spot.behind.other_bare;
             let table = Illumination {
                 table: DVec3::ONE,
@@ -256,7 +257,12 @@ mod tests {
             };
             spot.radiance(Tier::Draft, DVec3::Z, &table)
         };
-        assert!((shown(0.25) / shown(1.0) - 0.5).abs().max_element() < 1e-12);
+        assert!(
+            (shown(0.25, 0.5) / shown(1.0, 0.7) - 0.5)
+                .abs()
+                .max_element()
+                < 1e-12
+        );
     }
 
     /// Even light is what beams from everywhere give together. The surface's own mirroring of
