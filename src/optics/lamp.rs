@@ -291,6 +291,29 @@ mod tests {
     }
 
     #[test]
+    fn a_profile_turns_from_c_0_along_u_towards_v() {
+        // The same at every γ: 100, 200, 300 and 400 cd at C = 0, 90, 180 and 270°.
+        let text = "IESNA:LM-63-2002\nTILT=NONE\n1 100 1 2 4 1 2 0 0 0\n1 1 40\n0 90\n\
+                    0 90 180 270\n100 100 200 200 300 300 400 400\n";
+        let lamp = light(Shape::Ies {
+            position: DVec3::Z * 500.0,
+            axis: -DVec3::Z,
+            across_u: DVec3::X,
+            across_v: DVec3::Y,
+            photometry: Arc::new(Photometry::parse(text).expect("a file")),
+        });
+        for (p, share) in [
+            (DVec3::X, 0.25),
+            (DVec3::Y, 0.5),
+            (-DVec3::X, 0.75),
+            (-DVec3::Y, 1.0),
+        ] {
+            let e = lamp.at(p * 500.0)[0].e.x;
+            assert!((e * 500_000.0 - share).abs() < 1e-9, "{p}: {e}");
+        }
+    }
+
+    #[test]
     fn rectangle_meets_the_polygon_formula() {
         let (half_u, half_v) = (DVec3::X * 100.0, DVec3::Y * 20.0);
         for centre in [DVec3::new(0.0, 0.0, 400.0), DVec3::new(300.0, 100.0, 200.0)] {

@@ -468,6 +468,24 @@ fn layer_photographed(tau: f64, r_b: f64, below: f64) -> Body {
 mod tests {
     use super::*;
 
+    /// Kubelka 1948: R = sinh bS/(a sinh bS + b cosh bS), T = b over the same.
+    #[test]
+    fn layers_of_pigment_meet_their_closed_form() {
+        for tau in [0.2, 1.0, 6.0] {
+            let clear = layer_of_pigment(tau, 0.0);
+            assert!((clear.reflected + clear.transmitted - 1.0).abs() < 1e-12);
+            for loss in [1e-3, 0.1, 2.0] {
+                let (s, k) = (0.75 * tau, 2.0 * loss * tau);
+                let a = 1.0 + k / s;
+                let b = (a * a - 1.0).sqrt();
+                let below = a * (b * s).sinh() + b * (b * s).cosh();
+                let layer = layer_of_pigment(tau, loss);
+                assert!((layer.reflected - (b * s).sinh() / below).abs() < 1e-9);
+                assert!((layer.transmitted - b / below).abs() < 1e-9, "{tau} {loss}");
+            }
+        }
+    }
+
     #[test]
     fn paint_over_paper_reflects_what_was_photographed() {
         for tau in [0.5, 2.0, 10.0] {

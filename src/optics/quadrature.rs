@@ -176,6 +176,7 @@ mod tests {
                 );
                 assert!(mean(2 * k + 1, 0).abs() < 1e-14);
                 assert!(mean(1, 2 * k).abs() < 1e-14);
+                assert!(mean(2 * k, 1).abs() < 1e-14);
                 wallis *= f64::from(2 * k + 1) / f64::from(2 * k + 2);
             }
             assert!((mean(4 * rings as i32, 0) - wallis / f64::from(2 * rings + 1)).abs() > 1e-9);

@@ -237,10 +237,32 @@ mod tests {
         };
         let leaning = DVec3::new(1.0, 0.0, 1.0);
         assert!(lit(leaning, DVec3::new(1.0, 0.0, 0.5), 1.0) > 0.0);
+        assert!(lit(leaning, DVec3::new(-0.95, 0.0, 1.0), 1.0) > 0.0);
         // Turned away from a lamp above the sheet; towards one below it; in the shade.
         assert_eq!(lit(leaning, DVec3::new(-1.0, 0.0, 0.5), 1.0), 0.0);
         assert_eq!(lit(leaning, DVec3::new(1.0, 0.0, -0.5), 1.0), 0.0);
         assert_eq!(lit(leaning, DVec3::new(1.0, 0.0, 0.5), 0.0), 0.0);
+    }
+
+    /// Where a tier knows no films, light crosses the ink of the other side once.
+    #[test]
+    fn ink_behind_dims_by_the_root_of_what_is_photographed() {
+        let shown = |ink: f64, bare: f64| {
+            let mut spot = paper(DVec3::splat(0.7));
+            spot.behind.other_bare = DVec3::splat(bare);
+            spot.behind.other = ink * spot.behind.other_bare;
+            let table = Illumination {
+                table: DVec3::ONE,
+                ..Illumination::default()
+            };
+            spot.radiance(Tier::Draft, DVec3::Z, &table)
+        };
+        assert!(
+            (shown(0.25, 0.5) / shown(1.0, 0.7) - 0.5)
+                .abs()
+                .max_element()
+                < 1e-12
+        );
     }
 
     /// Even light is what beams from everywhere give together. The surface's own mirroring of

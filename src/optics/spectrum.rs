@@ -419,9 +419,20 @@ mod tests {
         }
     }
 
+    /// The rule between two stops is exact, so that one stop more changes nothing.
+    #[test]
+    fn a_point_on_the_line_between_two_others_changes_nothing() {
+        let few = chromaticity(&[450.0, 470.0], &[0.0, 1.0]).unwrap();
+        let more = chromaticity(&[450.0, 451.0, 470.0], &[0.0, 0.05, 1.0]).unwrap();
+        for (few, more) in few.into_iter().zip(more) {
+            assert!((few - more).abs() < 1e-12, "{few} {more}");
+        }
+    }
+
     #[test]
     fn what_is_no_spectrum_is_refused() {
         use SpectrumError as E;
+        assert!(E::Number(1).to_string().ends_with("at point 2"));
         let of = |w: &[f64], p: &[f64]| chromaticity(w, p).unwrap_err();
         assert_eq!(of(&[500.0], &[1.0]), E::Count(1));
         assert_eq!(

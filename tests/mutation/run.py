@@ -11,10 +11,16 @@ mutant; a run that was stopped goes on where it was. WORK is `mutation` in CARGO
 
 Both languages are judged in a crate of the physics alone, generated in WORK, so that nothing waits
 for the engine: its library is units, colour, optics, reference and the narrowing of
-src/sheet/uniform.rs; its tests are the unit tests of optics, tests/physics/tiers.rs,
-tests/judged.rs and tests/parity.rs. A mutant of a shader is laid in a folder that the tests' support
-code reads (RECTO_MUTANTS) and needs no compiling. The first failure ends a mutant. One that does
-not compile, or that the shader compiler refuses, does not count.
+src/sheet/uniform.rs; its tests are the unit tests of these, tests/parity.rs, tests/judged.rs, and
+tiers.rs, lobes.rs and matter.rs of tests/physics. The first failure ends a mutant. One that does not
+compile, or that the shader compiler refuses, does not count.
+
+A mutant of a shader is laid in a folder that the tests' support code reads (RECTO_MUTANTS) and
+needs no compiling. Mutants of Rust are compiled together, each behind a switch that RECTO_MUTANT
+throws (tests/mutation/switches writes them), so that one costs no more than the tests. What
+stands in a constant, a pattern or a type, and what the compiler refuses behind a switch, is
+compiled alone, after the others. Rust that takes more than six times as long as the sound tests, and
+20 s, never ends.
 
 tests/mutation/survivors.md explains those that are left.
 """
@@ -26,10 +32,14 @@ import math
 import os
 import random
 import re
+import resource
 import shutil
 import subprocess
 import sys
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -38,10 +48,17 @@ SHADERS = [f"shaders/paper_{name}.wgsl" for name in ("bsdf", "baselines", "media
 SOURCES = [f"src/optics/{name}.rs" for name in (
     "baselines bsdf fresnel ink lamp lamp_units lobes matter microfacet photometry quadrature relief slab "
     "refraction late shade spectrum study table through tier").split()]
-# Mutants that a test only notices by never ending are caught too.
+# Mutants that a test only notices by never ending are caught too: shaders after LONGEST_S; Rust after
+# so many times what the sound tests take, and LONGEST_MORE_S.
 LONGEST_S = 600
+LONGEST_TIMES = 6
+LONGEST_MORE_S = 20
+# Others share the machine with a mutant that only gathers memory.
+MOST_BYTES = 12 << 30
+# In the order in which a mutant meets them.
+TARGETS = [["--lib"], *(["--test", name] for name in ("parity", "tiers", "judged", "lobes", "matter"))]
 # A minute long, and what it sees the others see earlier.
-SLOW = ["the_gallery_tier_gives_back_all_light_and_no_more", "bake"]
+SLOW = ["the_gallery_tier_gives_back_all_light_and_no_more"]
 
 TOKEN = re.compile(
     r"(?P<skip>//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])'|'[a-z_]+\b)"
@@ -147,19 +164,22 @@ def applied(mutant):
     return text[:at] + new + text[at + len(old):]
 
 
-def generate(work):
-    """The crate of the physics alone."""
-    crate = work / "crate"
+def generate(work, name="crate", level=1, laid=(), more=""):
+    """The crate of the physics alone, optimised to `level`, but for the sources that are `laid` by
+    others; `more` is in its library."""
+    crate = work / name
     (crate / "bevy/src").mkdir(parents=True, exist_ok=True)
     (crate / "src/sheet").mkdir(parents=True, exist_ok=True)
-    for module in ("optics", "reference"):
-        shutil.copytree(ROOT / "src" / module, crate / "src" / module, dirs_exist_ok=True)
-    # Whole pictures need an exhibit and its maps; no test here asks for them.
-    walk = (ROOT / "src/reference/mod.rs").read_text()
-    write(crate / "src/reference/mod.rs", re.sub(r"pub (mod|use) picture[^\n]*\n", "", walk))
-    shutil.rmtree(crate / "src/reference/picture", ignore_errors=True)
-    for module in ("units", "colour"):
-        shutil.copy(ROOT / f"src/{module}.rs", crate / f"src/{module}.rs")
+    sources = [path for module in ("optics", "reference")
+               for path in sorted((ROOT / "src" / module).rglob("*.rs"))]
+    for source in [*sources, ROOT / "src/units.rs", ROOT / "src/colour.rs"]:
+        path, text = str(source.relative_to(ROOT)), source.read_text()
+        # Whole pictures need an exhibit and its maps; no test here asks for them.
+        if path == "src/reference/mod.rs":
+            text = re.sub(r"pub (mod|use) picture[^\n]*\n", "", text)
+        if path not in laid and not path.startswith("src/reference/picture"):
+            (crate / path).parent.mkdir(parents=True, exist_ok=True)
+            write(crate / path, text)
     # What of the narrowing needs no manifest and no maps.
     uniform = (ROOT / "src/sheet/uniform.rs").read_text().split("/// Twin of `Paper`.")[0]
     uniform = re.sub(r" {4}manifest::\{\n.*?\n {4}\},\n| {4}(?:manifest|maps)::[^\n]*\n"
@@ -179,7 +199,7 @@ pub mod sheet {{
     pub const PAPER_BASELINES: &str = include_str!("{shaders}/paper_baselines.wgsl");
     pub const PAPER_MEDIA: &str = include_str!("{shaders}/paper_media.wgsl");
 }}
-''')
+''' + more)
     write(crate / "bevy/src/lib.rs",
           "pub mod render { pub mod render_resource { pub use encase; pub use encase::ShaderType; } }\n")
     write(crate / "bevy/Cargo.toml", '''
@@ -191,7 +211,8 @@ edition = "2024"
 encase = "0.12"
 ''')
     tests = "".join(f'[[test]]\nname = "{name}"\npath = "{ROOT / path}"\n' for name, path in (
-        ("tiers", "tests/physics/tiers.rs"), ("judged", "tests/judged.rs"),
+        ("tiers", "tests/physics/tiers.rs"), ("lobes", "tests/physics/lobes.rs"),
+        ("matter", "tests/physics/matter.rs"), ("judged", "tests/judged.rs"),
         ("parity", "tests/parity.rs")))
     write(crate / "Cargo.toml", f'''
 [package]
@@ -203,22 +224,17 @@ edition = "2024"
 bevy = {{ path = "bevy" }}
 encase = "0.12"
 glam = {{ version = "0.32", features = ["encase"] }}
-oxilangtag = "0.1"
 palette = {{ version = "0.7", default-features = false, features = ["std"] }}
 pollster = "0.4"
 rand = {{ version = "0.10", default-features = false }}
 rand_distr = {{ version = "0.6", default-features = false }}
 rayon = "1.12"
-schemars = "1.2"
 serde = {{ version = "1", features = ["derive"] }}
-strsim = "0.11"
 thiserror = "2"
 wgpu = {{ version = "29", default-features = false, features = ["vulkan", "wgsl", "std", "parking_lot"] }}
-[dev-dependencies]
-proptest = "1.12"
 {tests}
 [profile.release]
-opt-level = 1
+opt-level = {level}
 overflow-checks = true
 incremental = true
 debug = false
@@ -260,15 +276,43 @@ def cargo(crate, env, target, *more):
     return run([*command, *more], env, crate)
 
 
+def messages(output):
+    """Cargo's."""
+    return [json.loads(line) for line in output.splitlines() if line.startswith("{")]
+
+
 def executable(crate, env, target):
-    """Of a built test."""
+    """Of a test, which is built, or None if it does not compile."""
     _, output = cargo(crate, env, target, "--no-run", "--message-format=json")
-    for line in output.splitlines():
-        if line.startswith("{"):
-            message = json.loads(line)
-            if message.get("executable") and message["target"]["name"] == target[-1]:
-                return message["executable"]
-    sys.exit(f"cargo built no {target[-1]}:\n{output[-2000:]}")
+    name = "recto" if target == ["--lib"] else target[-1]
+    for message in messages(output):
+        if message.get("executable") and message["target"]["name"] == name:
+            return message["executable"]
+    return None
+
+
+def until_a_failure(command, env, cwd, longest_s):
+    """(exit code, output) of a test binary, which ends with its first failed test."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+    process = subprocess.Popen(command, env=env, cwd=cwd, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, preexec_fn=limit)
+    late = threading.Event()
+    timer = threading.Timer(longest_s, lambda: (late.set(), process.kill()))
+    timer.start()
+    output, failed = "", False
+    for line in process.stdout:
+        line = line.decode(errors="replace")
+        output += line
+        if re.match(r"test .*FAILED$", line.rstrip()):
+            failed = True
+            process.kill()
+            break
+    process.stdout.close()
+    code = process.wait()
+    timer.cancel()
+    if late.is_set():
+        return 124, "it took too long"
+    return (101 if failed else code), output
 
 
 def arguments_of(target):
@@ -288,7 +332,7 @@ def judge_wgsl(mutant, work, crate, env):
     (folder / Path(mutant[0]).name).write_text(applied(mutant))
     global PARITY
     parity = ["--test", "parity"]
-    PARITY = PARITY or executable(crate, env, parity)
+    PARITY = PARITY or executable(crate, env, parity) or sys.exit("tests/parity.rs was not built")
     code, output = run([PARITY, *arguments_of(parity)[1:]], env, crate)
     if code == 0:
         return "survived", ""
@@ -298,25 +342,160 @@ def judge_wgsl(mutant, work, crate, env):
     return "caught", reason(output)
 
 
-def judge_rust(mutant, work, crate, env):
-    path = crate / mutant[0]
-    sound = (ROOT / mutant[0]).read_text()
-    path.write_text(applied(mutant))
-    try:
-        for target in (["--lib"], ["--test", "parity"], ["--test", "tiers"], ["--test", "judged"]):
-            code, output = cargo(crate, env, target, "--no-run")
+class Suite:
+    """The tests against a crate."""
+
+    def __init__(self, crate, env):
+        self.crate, self.env = crate, env
+        self.longest_s = {}
+
+    def built(self, target):
+        return executable(self.crate, self.env, target)
+
+    def sound(self):
+        """Takes the time of tests that all pass."""
+        for target in TARGETS:
+            binary = self.built(target)
+            if not binary:
+                sys.exit(f"{target[-1]} of the sound physics was not built")
+            at = time.time()
+            code, output = until_a_failure([binary, *arguments_of(target)[1:]], self.env, self.crate,
+                                           LONGEST_S)
             if code != 0:
+                sys.exit(f"the sound physics fails {target[-1]}:\n{output[-4000:]}")
+            took = time.time() - at
+            print(f"sound {target[-1]}: {took:.1f} s", flush=True)
+            self.longest_s[target[-1]] = LONGEST_TIMES * took + LONGEST_MORE_S
+
+    def judge(self, path, **more):
+        """Of a mutant in `path`, whose own unit tests come first."""
+        own = [f"optics::{Path(path).stem}::"]
+        for target, only in [(["--lib"], own), *((target, []) for target in TARGETS)]:
+            binary = self.built(target)
+            if not binary:
                 return "invalid", ""
-            code, output = cargo(crate, env, target, *arguments_of(target))
+            code, output = until_a_failure([binary, *only, *arguments_of(target)[1:]],
+                                           {**self.env, **more}, self.crate,
+                                           self.longest_s[target[-1]])
             if code != 0:
                 return "caught", f"{target[-1]}: {reason(output)}"
         return "survived", ""
-    finally:
-        path.write_text(sound)
+
+
+class Alone(Suite):
+    """Compiles a mutant at a time."""
+
+    def judged(self, mutant):
+        path = self.crate / mutant[0]
+        path.write_text(applied(mutant))
+        try:
+            return self.judge(mutant[0])
+        finally:
+            path.write_text((ROOT / mutant[0]).read_text())
+
+
+class Switched(Suite):
+    """All of `wanted` in one build, and which of them have their switch. `every` numbers them."""
+
+    def __init__(self, work, env, wanted, every):
+        self.paths = sorted({mutant[0] for mutant in wanted})
+        super().__init__(generate(work, "switched", 2, self.paths, SWITCH), env)
+        self.number = {identity(mutant): number for number, mutant in enumerate(every, 1)}
+        self.wanted = wanted
+        self.tool = work / "switches/debug/switches"
+        code, output = run(["cargo", "build", "--offline"],
+                           dict(env, CARGO_TARGET_DIR=str(work / "switches")),
+                           ROOT / "tests/mutation/switches")
+        if code != 0:
+            sys.exit(output)
+        # Known from an earlier build.
+        known = work / "refused"
+        names = known.read_text().split("\n") if known.exists() else []
+        refused = {self.number[name] for name in names if name in self.number}
+        while True:
+            self.behind = self.lay(refused)
+            more = self.refused()
+            if not more:
+                break
+            if more <= refused:
+                sys.exit(f"the compiler refuses more than switches, see {self.crate}")
+            refused |= more
+            known.write_text("\n".join(name for name, number in self.number.items()
+                                       if number in refused))
+            print(f"without a switch, as they do not compile behind one: {len(refused)}", flush=True)
+        # Built once.
+        self.binaries = {target[-1]: executable(self.crate, self.env, target) for target in TARGETS}
+
+    def built(self, target):
+        return self.binaries[target[-1]]
+
+    def judged(self, mutant):
+        return self.judge(mutant[0], RECTO_MUTANT=str(self.number[identity(mutant)]))
+
+    def lay(self, refused):
+        """Writes the sources with their switches; the numbers that have one."""
+        behind = set()
+        for path in self.paths:
+            text = (ROOT / path).read_text()
+            lines = []
+            for mutant in self.wanted:
+                number = self.number[identity(mutant)]
+                if mutant[0] == path and number not in refused:
+                    lines.append(f"{number}\t{len(text[:mutant[3]].encode())}\t{mutant[5]}\n")
+            sites, switched = self.crate / "sites", self.crate / "switched.rs"
+            sites.write_text("".join(lines))
+            code, output = run([self.tool, ROOT / path, sites, switched], self.env, ROOT)
+            if code != 0:
+                sys.exit(f"{path}: {output}")
+            write(self.crate / path, switched.read_text())
+            behind |= {int(line) for line in output.split()}
+        return behind
+
+    def refused(self):
+        """The innermost switches that the compiler's errors lie in; else those of the same lines,
+        or of the same file."""
+        code, output = cargo(self.crate, self.env, ["--lib"], "--no-run", "--message-format=json")
+        if code == 0:
+            return set()
+        found = set()
+        for message in messages(output):
+            message = message.get("message") or {}
+            if message.get("level") != "error":
+                continue
+            for span in message["spans"]:
+                text = (self.crate / span["file_name"]).read_bytes()
+                before = text[:span["byte_start"]].decode()
+                inside = []
+                for mark in re.finditer(r"/\*([<>])(\d+)\*/", before):
+                    inside = inside + [int(mark[2])] if mark[1] == "<" else inside[:-1]
+                if span["is_primary"] and inside:
+                    found.add(inside[-1])
+                    continue
+                lines = text.decode().split("\n")[span["line_start"] - 1:span["line_end"]]
+                near = {int(number) for number in re.findall(r"/\*<(\d+)\*/", "\n".join(lines))}
+                if span["is_primary"]:
+                    found |= near or {int(number) for number in
+                                      re.findall(r"/\*<(\d+)\*/", text.decode())}
+        if not found:
+            sys.exit(output[-4000:])
+        return found
+
+
+# In the library of the crate with switches.
+SWITCH = """
+/// Whether it is the mutant that is judged.
+#[inline(always)]
+pub fn mutant(number: u32) -> bool {
+    static CHOSEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
+    let read = || std::env::var("RECTO_MUTANT").map_or(0, |text| text.parse().expect("a number"));
+    *CHOSEN.get_or_init(read) == number
+}
+"""
 
 
 def reason(output):
-    lines = [line for line in output.splitlines() if "panicked at" in line or "took too long" in line]
+    lines = [line for line in output.splitlines()
+             if "panicked at" in line or "took too long" in line or line.endswith("FAILED")]
     return lines[0][:160] if lines else ""
 
 
@@ -331,6 +510,31 @@ def interval(caught, count):
     return middle - half, middle + half
 
 
+def judges(language, due, chosen, every, work, env):
+    """(mutants, what judges each, whether several at a time) of all that are due of the chosen of
+    all."""
+    if not due:
+        return
+    if language == "wgsl":
+        crate, parity = generate(work), ["--test", "parity"]
+        code, output = cargo(crate, env, parity, *arguments_of(parity))
+        if code != 0:
+            sys.exit(f"the sound physics fails its shaders:\n{output[-4000:]}")
+        yield due, lambda mutant: judge_wgsl(mutant, work, crate, env), False
+        return
+    # All that were chosen, so that a run which goes on finds them built.
+    switched = Switched(work, env, chosen, every)
+    behind = [mutant for mutant in due if switched.number[identity(mutant)] in switched.behind]
+    print(f"{len(behind)} of {len(due)} have a switch", flush=True)
+    switched.sound()
+    yield behind, switched.judged, True
+    others = [mutant for mutant in due if mutant not in behind]
+    if others:
+        alone = Alone(generate(work), env)
+        alone.sound()
+        yield others, alone.judged, False
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("language", choices=["wgsl", "rust"])
@@ -341,6 +545,8 @@ def main():
     parser.add_argument("--again", action="store_true",
                         help="run the survivors of earlier runs again, after new tests")
     parser.add_argument("--minutes", type=float, help="begin no mutant after so long")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N",
+                        help="judge so many of Rust at a time")
     arguments = parser.parse_args()
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     work = (arguments.work or target / "mutation").resolve()
@@ -363,31 +569,33 @@ def main():
                 done[row["mutant"]] = row
     else:
         results.write_text("mutant,outcome,reason,seconds\n")
-    crate, env = generate(work), environment(work)
+    env = environment(work)
     shutil.rmtree(work / "mutant", ignore_errors=True)
     (work / "mutant").mkdir()
-    for target in (["--lib"], ["--test", "parity"], ["--test", "tiers"], ["--test", "judged"]):
-        if arguments.language == "wgsl" and target != ["--test", "parity"]:
-            continue
-        code, output = cargo(crate, env, target, *arguments_of(target))
-        if code != 0:
-            sys.exit(f"the sound physics fails {target}:\n{output[-4000:]}")
-    judge = judge_wgsl if arguments.language == "wgsl" else judge_rust
     begun = time.time()
-    for number, mutant in enumerate(chosen):
-        name = identity(mutant)
-        if name in done and not (arguments.again and done[name]["outcome"] == "survived"):
-            continue
-        if arguments.minutes and time.time() - begun > 60 * arguments.minutes:
-            break
+    due = [mutant for mutant in chosen if identity(mutant) not in done
+           or arguments.again and done[identity(mutant)]["outcome"] == "survived"]
+    number = 0
+
+    def timed(judge, mutant):
         at = time.time()
-        outcome, why = judge(mutant, work, crate, env)
-        row = {"mutant": name, "outcome": outcome, "reason": why,
-               "seconds": f"{time.time() - at:.1f}"}
-        done[name] = row
-        with results.open("a", newline="") as file:
-            csv.DictWriter(file, list(row)).writerow(row)
-        print(f"{number + 1}/{len(chosen)} {name}: {outcome} {why}", flush=True)
+        if arguments.minutes and at - begun > 60 * arguments.minutes:
+            return None
+        return judge(mutant), time.time() - at
+
+    for mutants_of, judge, several in judges(arguments.language, due, chosen, every, work, env):
+        with ThreadPoolExecutor(arguments.jobs if several else 1) as pool:
+            for mutant, judged in zip(mutants_of, pool.map(partial(timed, judge), mutants_of)):
+                number += 1
+                if judged is None:
+                    continue
+                (outcome, why), took = judged
+                name = identity(mutant)
+                row = {"mutant": name, "outcome": outcome, "reason": why, "seconds": f"{took:.1f}"}
+                done[name] = row
+                with results.open("a", newline="") as file:
+                    csv.DictWriter(file, list(row)).writerow(row)
+                print(f"{number}/{len(due)} {name}: {outcome} {why}", flush=True)
     rows = [done[identity(mutant)] for mutant in chosen if identity(mutant) in done]
     count = {outcome: sum(row["outcome"] == outcome for row in rows)
              for outcome in ("caught", "survived", "invalid")}

@@ -201,6 +201,45 @@ fn symmetries_stand_for_the_planes_that_are_not_given() {
         }
     }
     close(at("axial", 90.5, 0.0), 0.0);
+    // The last angle of a file is in it.
+    close(at("even", 180.0, 0.0), 100.0 / 150.0);
+}
+
+#[test]
+fn planes_that_are_evenly_spaced_are_rows() {
+    for (name, rows) in [
+        ("even", 1),
+        ("quadrants", 24),
+        ("halves", 24),
+        ("turned", 24),
+        ("full", 36),
+        ("open", 24),
+        ("odd", MOST_ROWS),
+    ] {
+        let (_, text) = files().into_iter().find(|(file, _)| *file == name).unwrap();
+        assert_eq!(Photometry::parse(&text).unwrap().rows(), rows, "{name}");
+    }
+}
+
+#[test]
+fn factors_are_read_up_to_their_bounds() {
+    let text = |multiplier: &str, watts: &str| {
+        format!(
+            "IESNA:LM-63-2002\nTILT=NONE\n1 100 {multiplier} 2 1 1 2 0 0 0\n1 1 {watts}\n\
+             0 90\n0\n10 10\n"
+        )
+    };
+    for (multiplier, watts) in [("1e-9", "0"), ("1e9", "1e9")] {
+        Photometry::parse(&text(multiplier, watts)).unwrap();
+    }
+    for (multiplier, watts, found) in [
+        ("9e-10", "0", "0.0000000009 as the candela multiplier"),
+        ("1.01e9", "0", "1010000000 as the candela multiplier"),
+        ("1", "1.01e9", "1010000000 as the input watts"),
+    ] {
+        let error = Photometry::parse(&text(multiplier, watts)).unwrap_err();
+        assert!(error.to_string().contains(found), "{error}");
+    }
 }
 
 #[test]
