@@ -18,7 +18,7 @@
 //! | the sheet on a light table → what its paper passes | [`transmission`] |
 //! | these four for a side | [`matter`] |
 //! | a verso's place on its recto | [`verso`] |
-//! | the photographs of a side, each read once | `solve` |
+//! | the photographs of a side, run through once: normals, albedo, and the rest | `solve`, `albedo` |
 //! | all of it, as a command does it | [`run`] |
 //!
 //! Lamps and normals are in the sheet's frame: x right, y up in the photograph, z towards the
