@@ -22,6 +22,8 @@ mod lights;
 mod made;
 #[path = "prepare/materials.rs"]
 mod materials;
+#[path = "prepare/memory.rs"]
+mod memory;
 #[path = "prepare/gltf.rs"]
 mod model;
 #[path = "prepare/moved.rs"]

@@ -3,7 +3,8 @@
 //! files to maps. Each takes a turn that is not counted, and the least of its turns counts. `PYTHON`
 //! names an interpreter that has NumPy (without one Recto is measured alone), `RECTO_BENCH_MPX` the
 //! size of a photograph (24), `RECTO_BENCH_ROUNDS` the number of turns (4), and `solve` or `chain`
-//! after `--` measures that one alone.
+//! after `--` measures that one alone. On Linux seconds of processors are told too, which a busy
+//! machine disturbs less, and the most memory that Recto held: of the chain, after `-- chain`.
 
 use std::{
     env,
@@ -96,40 +97,87 @@ fn load() -> String {
     )
 }
 
-/// Turn by turn; returns the least seconds of both.
+/// Seconds of all processors that a process has used, in its own code and in the system's; 0 where
+/// the system does not tell.
+fn processors(process: &str) -> f64 {
+    /// USER_HZ, which proc(5) counts in.
+    const TICKS: f64 = 100.0;
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    // A name in brackets may hold spaces.
+    let fields = stat.rsplit_once(')').map_or("", |(_, rest)| rest);
+    let ticks = fields.split_whitespace().skip(11).take(2);
+    ticks
+        .filter_map(|text| text.parse::<f64>().ok())
+        .sum::<f64>()
+        / TICKS
+}
+
+/// The most memory that this process has held, in words.
+fn memory() -> String {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
+    kib.map_or_else(
+        || "unknown".to_owned(),
+        |kib| format!("{:.2} GiB", kib / f64::from(1 << 20)),
+    )
+}
+
+/// Turn by turn, and what the least of the turns of both say.
 fn compare(
     name: &str,
     mut ours: impl FnMut() -> Result<String, Anything>,
     mut theirs: Option<Script>,
 ) -> Result<(), Anything> {
     let rounds = number("RECTO_BENCH_ROUNDS", 4.0) as usize;
-    let (mut least, mut least_theirs) = (f64::INFINITY, f64::INFINITY);
+    let of_script = theirs
+        .as_ref()
+        .map(|script| script.process.id().to_string());
+    let used = |process: &Option<String>| process.as_deref().map_or(0.0, processors);
+    // Seconds on the clock, and of processors.
+    let (mut least, mut least_theirs) = ([f64::INFINITY; 2], [f64::INFINITY; 2]);
     for round in 0..=rounds {
-        let start = Instant::now();
+        let (start, before) = (Instant::now(), processors("self"));
         let more = ours()?;
-        let seconds = start.elapsed().as_secs_f64();
+        let found = [start.elapsed().as_secs_f64(), processors("self") - before];
+        let before = used(&of_script);
         let other = theirs.as_mut().map(Script::turn).transpose()?;
+        let of_other = used(&of_script) - before;
         if round == 0 {
             continue;
         }
-        least = least.min(seconds);
-        print!("{name} {round}: Recto {seconds:.2} s {more}");
+        least = least_of(least, found);
+        print!(
+            "{name} {round}: Recto {:.2} s, {:.2} s of processors {more}",
+            found[0], found[1]
+        );
         if let Some((seconds, more)) = other {
-            least_theirs = least_theirs.min(seconds);
-            print!("; NumPy {seconds:.2} s ({more})");
+            least_theirs = least_of(least_theirs, [seconds, of_other]);
+            print!("; NumPy {seconds:.2} s, {of_other:.2} s of processors ({more})");
         }
         println!("; load {}", load());
     }
+    println!("{name}: at most {} held", memory());
     match theirs {
         Some(script) => {
             script.end()?;
-            println!("{name}: {:.2} times as fast as NumPy", least_theirs / least);
+            let [clock, work] = [0, 1].map(|i| least_theirs[i] / least[i]);
+            println!(
+                "{name}: {clock:.2} times as fast as NumPy, with {work:.2} times less work of processors"
+            );
         }
         None => {
-            println!("{name}: {least:.2} s; no NumPy: set PYTHON to an interpreter that has it")
+            println!(
+                "{name}: {:.2} s; no NumPy: set PYTHON to an interpreter that has it",
+                least[0]
+            );
         }
     }
     Ok(())
+}
+
+fn least_of(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].min(b[1])]
 }
 
 fn lamps() -> Vec<[f64; 2]> {

@@ -18,7 +18,9 @@ use super::{
     },
     flat_field::FlatField,
     lights::{self, intensity, sphere},
+    moved,
     photographs::Stack,
+    reduced::Grey,
     stereo::{Gain, Rig, Standing},
 };
 
@@ -156,16 +158,24 @@ pub fn flat_fields(
     photographs.par_iter().map(read).collect()
 }
 
-/// The lamps as the photographs of a side see them.
+/// The lamps as the photographs of a side see them, but for how bright they are.
+pub struct Looked {
+    rig: Rig,
+    samples: Option<Samples>,
+    /// The photographs made smaller by [`moved::step`], where they had to be read for their lamps.
+    pub greys: Option<Vec<Grey>>,
+}
+
+/// Looks at the photographs of a side as far as its lamps need it.
 ///
 /// # Errors
-/// Where they cannot be compared in brightness, and none of a file.
-pub fn rig(
+/// Of the first photograph that cannot be read.
+pub fn look(
     capture: &Capture,
     shots: &Shots,
     lamps: &FoundLamps,
     scratch: &Path,
-) -> Result<Rig, PrepareError> {
+) -> Result<Looked, PrepareError> {
     let crop = shots.crop;
     let [width, height] = shots.size.map(f64::from);
     let mut rig = Rig {
@@ -175,35 +185,56 @@ pub fn rig(
         middle_px: DVec2::new(width, height) / 2.0
             - DVec2::new(f64::from(crop.left), f64::from(crop.top)),
     };
-    let count = rig.count();
+    let equal = vec![1.0; rig.count()];
+    let (mut samples, mut greys) = (None, None);
     rig.gain = match &capture.lamps.light {
         Light::FlatField { .. } => Gain::FlatFielded,
         Light::Relative(values) => Gain::Relative(values.clone()),
-        Light::Unknown(Intensities::Equal) => Gain::Relative(vec![1.0; count]),
+        Light::Unknown(Intensities::Equal) => Gain::Relative(equal),
         Light::Unknown(Intensities::Solve) => {
-            let directions = lamps.standing.directions();
-            let samples = samples(capture, shots, &rig, scratch)?;
-            let found = intensity::solve(&directions, &samples);
-            Gain::Relative(found.ok_or_else(|| PrepareError::Dark {
-                path: shots.photographs[0].clone(),
-            })?)
+            rig.gain = Gain::Relative(equal);
+            let (shown, seen) = self::samples(capture, shots, &rig, scratch)?;
+            (samples, greys) = (Some(shown), seen);
+            rig.gain
         }
     };
-    Ok(rig)
+    Ok(Looked {
+        rig,
+        samples,
+        greys,
+    })
 }
 
+impl Looked {
+    /// The lamps as the photographs `shots` see them.
+    ///
+    /// # Errors
+    /// [`PrepareError::Dark`] where they cannot be compared in brightness.
+    pub fn rig(self, shots: &Shots) -> Result<Rig, PrepareError> {
+        let mut rig = self.rig;
+        if let Some(samples) = self.samples {
+            let directions = rig.standing.directions();
+            let found = intensity::solve(&directions, &samples);
+            rig.gain = Gain::Relative(found.ok_or_else(|| PrepareError::Dark {
+                path: shots.photographs[0].clone(),
+            })?);
+        }
+        Ok(rig)
+    }
+}
+
+/// Of each place, what each photograph shows.
+type Samples = Vec<Vec<f64>>;
+
 /// What all photographs show at places all over the sheet, each for its own distance and angle
-/// to a near lamp.
+/// to a near lamp of `middle`, which are equally bright; and the photographs made smaller, where
+/// memory allows.
 fn samples(
     capture: &Capture,
     shots: &Shots,
-    rig: &Rig,
+    middle: &Rig,
     scratch: &Path,
-) -> Result<Vec<Vec<f64>>, PrepareError> {
-    let middle = Rig {
-        gain: Gain::Relative(vec![1.0; rig.count()]),
-        ..rig.clone()
-    };
+) -> Result<(Samples, Option<Vec<Grey>>), PrepareError> {
     let step = (shots.crop.width().max(shots.crop.height()) / SAMPLES).max(1);
     let ambient = shots.ambient.as_deref();
     let mut stack = Stack::open(
@@ -213,12 +244,16 @@ fn samples(
         shots.crop,
         scratch,
     )?;
+    let reduced = moved::step(shots);
+    if let Some(step) = reduced {
+        stack.reduce(step);
+    }
     let mut samples = Vec::new();
     while let Some(band) = stack.next()? {
         for row in (0..band.rows).filter(|row| (band.top + row).is_multiple_of(step)) {
             for x in (step / 2..band.width).step_by(step) {
                 let at = DVec2::new(x as f64 + 0.5, (band.top + row) as f64 + 0.5);
-                let shown = (0..rig.count()).map(|i| {
+                let shown = (0..middle.count()).map(|i| {
                     let grey: f32 = band.row(i, row).iter().map(|plane| plane[x]).sum();
                     let lit = middle.lamp(i, at);
                     // As the lamp would show it from the middle.
@@ -228,8 +263,9 @@ fn samples(
                 samples.push(shown.collect());
             }
         }
+        stack.recycle(band);
     }
-    Ok(samples)
+    Ok((samples, reduced.map(|_| stack.greys())))
 }
 
 /// The correction of colours, where there is a chart.

@@ -18,11 +18,13 @@
 //! | the sheet on a light table → what its paper passes | [`transmission`] |
 //! | these four for a side | [`matter`] |
 //! | a verso's place on its recto | [`verso`] |
+//! | the photographs of a side, run through once: normals, albedo, and the rest | `solve`, `albedo` |
 //! | all of it, as a command does it | [`run`] |
 //!
 //! Lamps and normals are in the sheet's frame: x right, y up in the photograph, z towards the
 //! camera; a photograph's rows run down from its top.
 
+mod albedo;
 pub mod capture;
 pub mod colour;
 pub mod depth;
@@ -40,6 +42,7 @@ pub mod reduced;
 pub mod relief;
 mod report;
 mod run;
+mod solve;
 mod stage;
 pub mod stereo;
 pub mod transmission;

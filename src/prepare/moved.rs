@@ -16,7 +16,7 @@ use super::{
     PrepareError,
     capture::{Capture, Shots},
     linear::solve_positive,
-    reduced::{Reduced, step_to},
+    reduced::{Grey, Reduced, step_to},
     report::escaped,
 };
 use crate::maps::{
@@ -106,27 +106,60 @@ impl Stillness {
     }
 }
 
-/// As [`check`], of several sides.
+/// A side, and its photographs made smaller by [`step`] where they were read before.
+pub(super) type Seen<'s> = (&'s Shots, Option<Vec<Grey>>);
+
+/// What each photograph of a side is made smaller by while it runs through, for [`check_seen`];
+/// `None` where that many would take too much memory.
+pub(super) fn step(shots: &Shots) -> Option<usize> {
+    /// What the photographs of a side may take.
+    const MOST_BYTES: usize = 160 << 20;
+    let step = step_of(shots);
+    let bytes = Grey::bytes(shots.crop, step) * shots.photographs.len();
+    (bytes <= MOST_BYTES).then_some(step)
+}
+
+/// As [`check`], of several sides. The photographs of the first need not be read for it alone:
+/// where they have not been yet, what is told of it is `None`, and [`check_seen`] tells it when they
+/// run through, before anything is made of them.
 ///
 /// # Errors
 /// [`PrepareError::Moved`] with what moved of all sides, and as [`check`].
 pub(super) fn check_all(
-    sides: &[&Shots],
+    sides: Vec<Seen<'_>>,
     towards: &[DVec3],
     capture: &Capture,
     scratch: &Path,
-) -> Result<Vec<Stillness>, PrepareError> {
-    let (mut still, mut moved) = (Vec::new(), Vec::new());
-    for shots in sides {
-        match check(shots, towards, capture.mm_per_px, capture.encoding, scratch) {
-            Ok(stillness) => still.push(stillness),
+) -> Result<Vec<Option<Stillness>>, PrepareError> {
+    let read = |shots| check(shots, towards, capture.mm_per_px, capture.encoding, scratch);
+    let (mut still, mut later, mut moved) = (Vec::new(), None, Vec::new());
+    for (i, (shots, greys)) in sides.into_iter().enumerate() {
+        let checked = match greys {
+            Some(greys) => check_seen(shots, towards, capture.mm_per_px, greys),
+            None if i == 0 && step(shots).is_some() => {
+                later = Some(shots);
+                still.push(None);
+                continue;
+            }
+            None => read(shots),
+        };
+        match checked {
+            Ok(stillness) => still.push(Some(stillness)),
             Err(PrepareError::Moved(more)) => moved.extend(more),
             Err(other) => return Err(other),
         }
     }
-    match moved.is_empty() {
-        true => Ok(still),
-        false => Err(PrepareError::Moved(moved)),
+    if moved.is_empty() {
+        return Ok(still);
+    }
+    // All that has to be photographed again is told at once.
+    match later.map(read) {
+        Some(Err(PrepareError::Moved(mut first))) => {
+            first.append(&mut moved);
+            Err(PrepareError::Moved(first))
+        }
+        Some(Err(other)) => Err(other),
+        Some(Ok(_)) | None => Err(PrepareError::Moved(moved)),
     }
 }
 
@@ -143,15 +176,45 @@ pub fn check(
     encoding: ColourEncoding,
     scratch: &Path,
 ) -> Result<Stillness, PrepareError> {
-    let size = [shots.crop.width(), shots.crop.height()];
-    let step = step_to(LONGEST_PX, size);
+    let step = step_of(shots);
     let read = |path: &PathBuf| -> Result<Option<Detail>, PrepareError> {
         let small = Reduced::read(path, encoding, shots.crop, step, scratch)?;
         Ok(Detail::new(&small.grey(), small.size))
     };
     let details: Result<Vec<_>, PrepareError> = shots.photographs.par_iter().map(read).collect();
-    let details = details?;
-    let reduced = size.map(|side| side / step);
+    compare(shots, towards, mm_per_px, &details?)
+}
+
+/// As [`check`], of photographs that were made smaller by [`step`] on the way.
+///
+/// # Errors
+/// [`PrepareError::Moved`] with every photograph that is shifted.
+pub(super) fn check_seen(
+    shots: &Shots,
+    towards: &[DVec3],
+    mm_per_px: f64,
+    greys: Vec<Grey>,
+) -> Result<Stillness, PrepareError> {
+    let detail = |grey: Grey| {
+        let (size, values) = grey.finish();
+        Detail::new(&values, size)
+    };
+    let details: Vec<_> = greys.into_par_iter().map(detail).collect();
+    compare(shots, towards, mm_per_px, &details)
+}
+
+fn step_of(shots: &Shots) -> usize {
+    step_to(LONGEST_PX, [shots.crop.width(), shots.crop.height()])
+}
+
+fn compare(
+    shots: &Shots,
+    towards: &[DVec3],
+    mm_per_px: f64,
+    details: &[Option<Detail>],
+) -> Result<Stillness, PrepareError> {
+    let step = step_of(shots);
+    let reduced = [shots.crop.width() / step, shots.crop.height() / step];
     let pairs: Vec<[usize; 2]> = neighbours(towards).into_iter().collect();
     let compared: Vec<Pair> = pairs
         .par_iter()

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::{capture::Crop, flat_field::FlatField};
+use super::{capture::Crop, flat_field::FlatField, reduced::Grey};
 use crate::maps::{ColourEncoding, ColourRows, MapError};
 
 /// What a band may take in memory, in bytes.
 const BAND_BYTES: usize = 96 << 20;
+/// And one of a photograph that is read by itself, as each processor may read one.
+const SINGLE_BYTES: usize = 8 << 20;
 /// Bytes of one pixel of one photograph.
 const PIXEL_BYTES: usize = 3 * size_of::<f32>();
 
@@ -35,6 +37,8 @@ pub struct Stack {
     band_rows: usize,
     /// Planes of bands that are done with: memory that is given back has to be cleared again.
     spare: Vec<[Vec<f32>; 3]>,
+    /// Of each photograph, where it was asked for.
+    greys: Vec<Grey>,
 }
 
 /// Rows of all photographs of a stack.
@@ -105,13 +109,15 @@ impl Stack {
         let full = readers.first().map_or(1, |rows| rows.header().size[0]) as usize;
         let count = paths.len() + usize::from(ambient.is_some());
         let bytes = full * PIXEL_BYTES * count.max(1);
+        let most = if count > 1 { BAND_BYTES } else { SINGLE_BYTES };
         let mut stack = Self {
             readers,
             ambient,
             crop,
             done: 0,
             spare: Vec::new(),
-            band_rows: (BAND_BYTES / bytes).clamp(1, 512),
+            greys: Vec::new(),
+            band_rows: (most / bytes).clamp(1, 512),
         };
         stack.skip(crop.top as usize)?;
         Ok(stack)
@@ -136,6 +142,18 @@ impl Stack {
         Ok(())
     }
 
+    /// From now on, makes smaller what each photograph shows, its room's light included, as
+    /// [`Self::greys`] gives it.
+    pub fn reduce(&mut self, step: usize) {
+        let crop = self.crop;
+        self.greys = self.readers.iter().map(|_| Grey::new(crop, step)).collect();
+    }
+
+    /// The photographs made smaller, once all bands have been read; none without [`Self::reduce`].
+    pub fn greys(&mut self) -> Vec<Grey> {
+        std::mem::take(&mut self.greys)
+    }
+
     /// Takes back a band that is done with, for its memory.
     pub fn recycle(&mut self, band: Band) {
         self.spare = band.planes;
@@ -156,7 +174,8 @@ impl Stack {
         }
         let crop = self.crop;
         let read = |reader: &mut ColourRows,
-                    spare: Option<[Vec<f32>; 3]>|
+                    spare: Option<[Vec<f32>; 3]>,
+                    grey: Option<&mut Grey>|
          -> Result<[Vec<f32>; 3], MapError> {
             let full = reader.header().size[0] as usize;
             let mut planes = spare.unwrap_or_default();
@@ -173,18 +192,27 @@ impl Stack {
                     plane.truncate(rows * crop.width());
                 }
             }
+            if let Some(grey) = grey {
+                for y in 0..rows {
+                    let range = y * crop.width()..(y + 1) * crop.width();
+                    grey.add(planes.each_ref().map(|plane| &plane[range.clone()]));
+                }
+            }
             Ok(planes)
         };
         let mut spare: Vec<_> = self.spare.drain(..).map(Some).collect();
         spare.resize_with(self.readers.len(), || None);
+        let mut greys: Vec<_> = self.greys.iter_mut().map(Some).collect();
+        greys.resize_with(self.readers.len(), || None);
         let planes: Result<Vec<_>, MapError> = self
             .readers
             .par_iter_mut()
             .zip(spare)
-            .map(|(reader, spare)| read(reader, spare))
+            .zip(greys)
+            .map(|((reader, spare), grey)| read(reader, spare, grey))
             .collect();
         let mut planes = planes?;
-        let ambient = self.ambient.as_mut().map(|reader| read(reader, None));
+        let ambient = self.ambient.as_mut().map(|reader| read(reader, None, None));
         if let Some(ambient) = ambient.transpose()? {
             for photograph in &mut planes {
                 for (plane, dark) in photograph.iter_mut().zip(&ambient) {

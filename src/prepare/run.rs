@@ -8,7 +8,7 @@ use std::{
 use rayon::prelude::*;
 
 use super::{
-    capture::{Capture, Circle, Light, Robustness, Shots},
+    capture::{Capture, Circle, Shots},
     colour::{
         chart::ChartError,
         correct::{Correction, Fitted},
@@ -16,24 +16,22 @@ use super::{
     find::{self, FoundLamps},
     flat_field::FlatFieldError,
     lights::{self, Ill, ball::NoBall, sphere::NoHighlight},
-    matter::{Bench, Gathering, MatterReport},
+    matter::{Bench, MatterReport},
     moved::{self, Moved, Stillness},
-    photographs::{Stack, StackError},
+    photographs::StackError,
     relief::{
         compare::{Comparison, range, remove_plane},
-        filter::{Split, split},
+        filter::{Coarse, Split, split},
         integrate::{Slopes, integrate_free},
         surface,
     },
     report,
+    solve::{Side, Solved, solve_side},
     stage::Stage,
-    stereo::{
-        Gain, Response, Rig, Rows, Solver, Standing,
-        left_out::{LeftOut, Relit},
-    },
+    stereo::{Gain, Rig, Standing, left_out::Relit},
     transmission::TransmissionError,
     verso,
-    write::{self, SideFiles, SideText, SrgbCodes},
+    write::{self, SideFiles, SideText},
 };
 use crate::{
     manifest::{Exhibit, Faults, SideName},
@@ -198,21 +196,32 @@ fn staged(
         .filter_map(|(side, shots)| Some((side, shots?)))
         .collect();
     tell("comparing the photographs", 0.04);
-    let both_shots: Vec<&Shots> = shots.iter().map(|(_, shots)| *shots).collect();
-    let stillness = moved::check_all(&both_shots, &lamps.standing.directions(), capture, scratch)?;
-    let mut reports = Vec::new();
+    let mut looked = Vec::new();
+    let mut seen = Vec::new();
+    for (_, shots) in &shots {
+        let mut side = find::look(capture, shots, &lamps, scratch)?;
+        seen.push((*shots, side.greys.take()));
+        looked.push(side);
+    }
+    let towards = lamps.standing.directions();
+    let checked = moved::check_all(seen, &towards, capture, scratch)?;
     let mut sides = Vec::new();
-    let mut found_rig = None;
-    for (i, (side, shots)) in shots.iter().enumerate() {
-        let from = 0.1 + 0.85 * i as f64 / shots_count(&both);
-        let share = 0.85 / shots_count(&both);
+    for ((side, shots), looked) in shots.into_iter().zip(looked) {
+        let rig = looked.rig(shots)?;
+        sides.push(Side { side, shots, rig });
+    }
+    let mut reports = Vec::new();
+    let mut texts = Vec::new();
+    let mut stillness = Vec::new();
+    for (i, (side, still)) in sides.iter().zip(checked).enumerate() {
+        let share = 0.85 / sides.len() as f64;
+        let from = 0.1 + share * i as f64;
         let mut tell = |step, done: f64| tell(step, from + share * done);
-        let rig = find::rig(capture, shots, &lamps, scratch)?;
-        let (text, side) =
-            prepare_side(capture, *side, shots, &rig, correction, scratch, &mut tell)?;
-        found_rig.get_or_insert(rig);
-        sides.push(text);
-        reports.push(side);
+        let solved = solve_side(capture, side, still, correction, scratch, &mut tell)?;
+        stillness.push(solved.stillness.clone());
+        let (text, report) = prepare_side(capture, side, solved, correction, scratch, &mut tell)?;
+        texts.push(text);
+        reports.push(report);
     }
     tell("placing the verso", 0.95);
     let verso = capture.verso.as_ref();
@@ -220,7 +229,7 @@ fn staged(
     let placed = placed.transpose()?;
     let report = Report {
         manifest: out.join(crate::manifest::MANIFEST),
-        lamps: lamps_found(&lamps, found_rig.as_ref()),
+        lamps: lamps_found(&lamps, sides.first().map(|side| &side.rig)),
         ball: lamps.circle,
         spread: lamps.spread,
         colour,
@@ -229,7 +238,7 @@ fn staged(
         verso: placed,
         interrupted: stage.interrupted,
     };
-    write::manifest(capture, &sides, &report, scratch)?;
+    write::manifest(capture, &texts, &report, scratch)?;
     report::html(capture, &report, scratch)?;
     // What is written is what `recto check` passes.
     Exhibit::read(scratch)?;
@@ -239,10 +248,6 @@ fn staged(
         done: 1.0,
     });
     Ok(report)
-}
-
-fn shots_count(both: &[(SideName, Option<&Shots>); 2]) -> f64 {
-    both.iter().filter(|(_, shots)| shots.is_some()).count() as f64
 }
 
 fn lamps_found(lamps: &FoundLamps, rig: Option<&Rig>) -> Vec<LampFound> {
@@ -262,72 +267,25 @@ fn lamps_found(lamps: &FoundLamps, rig: Option<&Rig>) -> Vec<LampFound> {
     found.collect()
 }
 
-/// Solves the photographs of one side, band by band, and writes its maps, each as soon as nothing
-/// else needs it: of a large sheet, not all of them are in memory at once.
+/// Writes the maps of one side, each as soon as nothing else needs it: of a large sheet, not all of
+/// them are in memory at once.
 fn prepare_side(
     capture: &Capture,
-    side: SideName,
-    shots: &Shots,
-    rig: &Rig,
+    of: &Side<'_>,
+    solved: Solved,
     correction: Option<&Correction>,
     scratch: &Path,
     tell: &mut dyn FnMut(&'static str, f64),
 ) -> Result<(SideText, SideReport), PrepareError> {
-    tell("reading grey cards", 0.0);
-    let fields = find::flat_fields(capture, shots, scratch)?;
-    let solver = Solver {
-        rig: rig.clone(),
-        response: Response::laid_paper(),
-        robustness: capture.relief.against_outliers,
-    };
+    let Side { side, shots, rig } = of;
+    let side = *side;
+    let Solved {
+        mut normals,
+        albedo: mut encoded,
+        assumed_exposure,
+        ..
+    } = solved;
     let size = [shots.crop.width(), shots.crop.height()];
-    let count = size[0] * size[1];
-    let mut normals: Vec<[f32; 3]> = Vec::with_capacity(count);
-    let mut albedo: [Vec<f32>; 3] = [0, 1, 2].map(|_| Vec::with_capacity(count));
-    let mut residuals = Histogram::default();
-    let mut left_out = LeftOut::new(&solver, size[1]);
-    let mut doubted = 0;
-    let mut gathering = Gathering::new(capture, side, shots);
-    let ambient = shots.ambient.as_deref();
-    let mut stack = Stack::open(
-        &shots.photographs,
-        ambient,
-        capture.encoding,
-        shots.crop,
-        scratch,
-    )?;
-    while let Some(mut band) = stack.next()? {
-        band.divide(&fields);
-        let rows = Rows {
-            planes: &band.planes,
-            width: band.width,
-            top: band.top,
-        };
-        left_out.add(rows);
-        let mut solved = solver.solve(rows);
-        gathering.add(&band, &solved, rig);
-        if let Some(correction) = correction {
-            let [r, g, b] = &mut solved.albedo;
-            correction.apply_planes([r, g, b]);
-        }
-        normals.append(&mut solved.normal);
-        for (all, band) in albedo.iter_mut().zip(&mut solved.albedo) {
-            all.append(band);
-        }
-        solved.residual.iter().for_each(|r| residuals.add(*r));
-        doubted += solved.doubted;
-        tell(
-            "solving",
-            0.1 + 0.4 * (band.top + band.rows) as f64 / size[1] as f64,
-        );
-        stack.recycle(band);
-    }
-    // Its buffers are as large as a map of its own.
-    drop(stack);
-    let measured = matches!(capture.lamps.light, Light::FlatField { .. }) || correction.is_some();
-    let assumed_exposure = (!measured).then(|| exposure(&albedo[1]));
-    let mut encoded = encoded(&albedo, assumed_exposure.unwrap_or(1.0));
-    drop(albedo);
     tell("materials", 0.5);
     let maps = SideFiles::new(side, size, capture, scratch)?;
     let bench = Bench {
@@ -337,9 +295,11 @@ fn prepare_side(
         rig,
         correction,
         exposure: assumed_exposure.unwrap_or(1.0),
-        fields: &fields,
+        fields: &solved.fields,
     };
-    let matter = gathering.finish(&bench, &mut encoded, &mut normals, &maps, scratch)?;
+    let matter = solved
+        .gathering
+        .finish(&bench, &mut encoded, &mut normals, &maps, scratch)?;
     tell("relief", 0.65);
     let sigma_px = (capture.relief.split_mm / capture.mm_per_px).max(0.5);
     // A file is written by one processor: the others go on.
@@ -351,7 +311,14 @@ fn prepare_side(
     drop(encoded);
     let um_per_px = capture.mm_per_px * 1000.0;
     let extent = |heights: &[f64]| range(heights, [0.0, 1.0]).unwrap_or_default();
-    let mut shape = heights(&large.vectors, large.width, um_per_px * large.step as f64);
+    let Coarse {
+        vectors,
+        width,
+        step,
+    } = large;
+    let slopes = Slopes::of_normals(&vectors, width);
+    drop(vectors);
+    let mut shape = heights(slopes, um_per_px * step as f64);
     if let Some(known) = capture.relief.known_range_um {
         let [low, high] = extent(&shape);
         if high > low {
@@ -361,19 +328,19 @@ fn prepare_side(
     let shape_um = extent(&shape);
     let compared = match (&capture.compare, side) {
         (Some(other), SideName::Recto) => {
-            let mm = capture.mm_per_px * large.step as f64;
-            surface::compared(&shape, large.width, mm, other)?
+            let mm = capture.mm_per_px * step as f64;
+            surface::compared(&shape, width, mm, other)?
         }
         _ => None,
     };
-    let surface = maps.shape(&shape, large.width)?;
-    drop((shape, large));
+    let surface = maps.shape(&shape, width)?;
+    drop(shape);
     tell("relief", 0.8);
     let slopes = Slopes::of_normals(&small, size[0]);
     let encoded = write::normal_codes(&small);
     // Before heights take their memory.
     drop(small);
-    let (written, grain) = rayon::join(|| maps.normal(&encoded), || heights_of(slopes, um_per_px));
+    let (written, grain) = rayon::join(|| maps.normal(&encoded), || heights(slopes, um_per_px));
     written?;
     let grain_um = extent(&grain);
     tell("writing maps", 0.9);
@@ -381,12 +348,9 @@ fn prepare_side(
     let report = SideReport {
         side,
         size,
-        residual: [residuals.quantile(0.5), residuals.quantile(0.95)],
-        doubted: match capture.relief.against_outliers {
-            Robustness::None => 0.0,
-            _ => doubted as f64 / count.max(1) as f64,
-        },
-        relit: left_out.relit(),
+        residual: solved.residual,
+        doubted: solved.doubted,
+        relit: solved.relit,
         assumed_exposure,
         shape_um,
         grain_um,
@@ -396,75 +360,11 @@ fn prepare_side(
     Ok((text, report))
 }
 
-/// Heights in µm of unit normals, their mean plane taken out.
-fn heights(normals: &[[f32; 3]], width: usize, um_per_px: f64) -> Vec<f64> {
-    heights_of(Slopes::of_normals(normals, width), um_per_px)
-}
-
-fn heights_of(slopes: Slopes, um_per_px: f64) -> Vec<f64> {
+/// Heights in µm of slopes, their mean plane taken out.
+fn heights(slopes: Slopes, um_per_px: f64) -> Vec<f64> {
     let width = slopes.width;
     let mut heights = integrate_free(slopes);
     remove_plane(&mut heights, width);
     heights.par_iter_mut().for_each(|h| *h *= um_per_px);
     heights
-}
-
-/// What brings the brightest paper to a white sheet's albedo, where nothing says how bright the
-/// light was.
-fn exposure(green: &[f32]) -> f64 {
-    /// Of white paper.
-    const WHITE: f64 = 0.85;
-    /// What is brighter is a gleam.
-    const BRIGHTEST: f64 = 0.995;
-    const EVERY: usize = 7;
-    let mut sampled: Vec<f32> = green.iter().step_by(EVERY).copied().collect();
-    if sampled.is_empty() {
-        return 1.0;
-    }
-    let i = ((sampled.len() - 1) as f64 * BRIGHTEST) as usize;
-    let white = f64::from(*sampled.select_nth_unstable_by(i, f32::total_cmp).1);
-    if white > 0.0 { WHITE / white } else { 1.0 }
-}
-
-fn encoded(albedo: &[Vec<f32>; 3], factor: f64) -> Vec<[u16; 3]> {
-    let codes = SrgbCodes::new();
-    let factor = factor as f32;
-    (0..albedo[0].len())
-        .into_par_iter()
-        .map(|i| [0, 1, 2].map(|c| codes.of(albedo[c][i] * factor)))
-        .collect()
-}
-
-/// Residuals counted in steps of a thousandth.
-struct Histogram {
-    counts: Vec<u64>,
-}
-
-impl Default for Histogram {
-    fn default() -> Self {
-        Self {
-            counts: vec![0; 1001],
-        }
-    }
-}
-
-impl Histogram {
-    fn add(&mut self, residual: f32) {
-        // Casts saturate, and NaN counts as none.
-        let step = ((residual * 1000.0) as usize).min(1000);
-        self.counts[step] += 1;
-    }
-
-    fn quantile(&self, share: f64) -> f64 {
-        let all: u64 = self.counts.iter().sum();
-        let wanted = share * all as f64;
-        let mut sum = 0;
-        for (step, count) in self.counts.iter().enumerate() {
-            sum += count;
-            if sum as f64 >= wanted {
-                return step as f64 / 1000.0;
-            }
-        }
-        1.0
-    }
 }

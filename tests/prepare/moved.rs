@@ -365,3 +365,71 @@ fn what_moved_is_not_prepared() {
     assert!(told.contains("photograph them again"), "{told}");
     assert!(!told.contains("r1.png") && !out.exists());
 }
+
+/// A capture of a sheet whose lamps are as bright as `how` says, with a back where `verso`.
+fn sheet(folder: &Path, how: &str, verso: bool) -> PathBuf {
+    let path = interrupted::capture(folder, 160);
+    let text = std::fs::read_to_string(&path).expect("a capture");
+    let mut text = text.replace("elevation_deg = 45", &format!("elevation_deg = 45{how}"));
+    if verso {
+        for i in 0..4 {
+            let [from, to] = ["r", "v"].map(|side| folder.join(format!("{side}{i}.png")));
+            std::fs::copy(from, to).expect("copied");
+        }
+        text += "verso.photographs = [\"v0.png\", \"v1.png\", \"v2.png\", \"v3.png\"]\n";
+    }
+    std::fs::write(&path, text).expect("written");
+    path
+}
+
+/// Brightness is solved, which reads the photographs for it; or nothing reads them before they are
+/// solved.
+const BRIGHT: [&str; 2] = ["", ", intensities = \"equal\""];
+
+#[test]
+fn photographs_that_run_through_tell_what_they_tell_by_themselves() {
+    for how in BRIGHT {
+        let folder = folder();
+        let path = sheet(folder.path(), how, true);
+        let report = interrupted::run(&path, &folder.path().join("out")).expect("prepared");
+        let (capture, _) = Capture::read(&path).expect("a capture");
+        let lamps: Vec<DVec3> = (0..4)
+            .map(|i| direction(90.0 * f64::from(i), 45.0))
+            .collect();
+        let verso = capture.verso.as_ref().expect("a back");
+        let alone = [&capture.recto, verso].map(|shots| {
+            let encoding = capture.encoding;
+            moved::check(shots, &lamps, MM_PER_PX, encoding, folder.path()).expect("still")
+        });
+        assert_eq!(report.stillness, alone, "{how:?}");
+        assert_eq!(alone[0].compared(), 4);
+    }
+}
+
+#[test]
+fn what_moved_of_both_sides_is_told_at_once() {
+    let by = DAffine2::from_translation(DVec2::new(2.0, 1.0));
+    for how in BRIGHT {
+        for wrong in [&["r1.png"][..], &["v3.png"], &["r2.png", "v0.png"]] {
+            let folder = folder();
+            let path = sheet(folder.path(), how, true);
+            for name in wrong {
+                let path = folder.path().join(name);
+                Picture::read(&path).moved(&path, by);
+            }
+            let out = folder.path().join("out");
+            let told = interrupted::run(&path, &out)
+                .expect_err("it moved")
+                .to_string();
+            for name in ["r0", "r1", "r2", "r3", "v0", "v1", "v2", "v3"] {
+                let name = format!("{name}.png");
+                assert_eq!(
+                    told.contains(&name),
+                    wrong.contains(&name.as_str()),
+                    "{told}"
+                );
+            }
+            assert!(!out.exists());
+        }
+    }
+}

@@ -8,6 +8,7 @@ use recto::{
         capture::Crop,
         flat_field::{FlatField, FlatFieldError},
         photographs::Stack,
+        reduced::Reduced,
     },
 };
 
@@ -140,6 +141,35 @@ fn a_room_s_light_is_taken_away() {
     let band = stack.next().expect("read").expect("a band");
     let left = band.row(0, 3)[1][3];
     assert!((left - 20_000.0 / 65535.0).abs() < 1e-6, "{left}");
+}
+
+#[test]
+fn photographs_are_made_smaller_on_the_way_as_by_themselves() {
+    let folder = folder();
+    let paths = formats(folder.path());
+    let crop = Crop {
+        left: 3,
+        top: 2,
+        right: 96,
+        bottom: 60,
+    };
+    for step in [1, 5, 7, 60] {
+        let encoding = ColourEncoding::Linear;
+        // The room's light, which is taken from a photograph, does not move either.
+        let ambient = Some(paths[0].as_path());
+        let mut stack =
+            Stack::open(&paths, ambient, encoding, crop, folder.path()).expect("a stack");
+        stack.reduce(step);
+        while stack.next().expect("read").is_some() {}
+        let greys = stack.greys();
+        assert_eq!(greys.len(), paths.len());
+        for (path, grey) in paths.iter().zip(greys) {
+            let alone = Reduced::read(path, encoding, crop, step, folder.path()).expect("read");
+            assert_eq!(alone.size, [93 / step, 58 / step]);
+            assert_eq!(alone.planes[1].len(), alone.size[0] * alone.size[1]);
+            assert!(grey.finish() == (alone.size, alone.grey()), "{step}");
+        }
+    }
 }
 
 /// How even a grey card is once divided by itself, a lamp falling off by half over it.

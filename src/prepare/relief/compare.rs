@@ -62,7 +62,17 @@ pub fn compare(
     mm_per_px: f64,
     patches_mm: &[f64],
 ) -> Option<Comparison> {
-    let mut difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    let difference = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    of_difference(difference, width, mm_per_px, patches_mm)
+}
+
+/// As [`compare`], of heights less those that they are compared with.
+pub(super) fn of_difference(
+    mut difference: Vec<f64>,
+    width: usize,
+    mm_per_px: f64,
+    patches_mm: &[f64],
+) -> Option<Comparison> {
     remove_plane(&mut difference, width)?;
     let whole = spread(difference.iter().copied())?;
     let height = difference.len() / width;

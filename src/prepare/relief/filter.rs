@@ -11,7 +11,7 @@
 
 use rayon::prelude::*;
 
-use super::transform::transposed;
+use super::transform::along_columns;
 use crate::prepare::capture::Filter;
 
 /// Boxes that make a Gaussian: four of them are within 0.3 % of it.
@@ -128,15 +128,30 @@ pub fn split(mut normals: Vec<[f32; 3]>, width: usize, sigma_px: f64, filter: Fi
     }
     let coarse = COARSE[usize::from(filter == Filter::Bilateral)];
     let step = ((sigma_px / coarse) as usize).max(1);
-    let mut large = Coarse::new(&normals, width, step);
     let sigma = sigma_px / step as f64;
-    large.vectors = match filter {
-        // The means have smoothed by their own width already.
+    let mut large = match filter {
         Filter::Gaussian => {
+            let mut large = Coarse::new(&normals, width, step);
+            // The means have smoothed by their own width already.
             let own = if step > 1 { 1.0 / 12.0 } else { 0.0 };
-            gaussian(&large.vectors, large.width, (sigma * sigma - own).sqrt())
+            smooth(
+                &mut large.vectors,
+                large.width,
+                (sigma * sigma - own).sqrt(),
+            );
+            large
         }
-        Filter::Bilateral => bilateral(&large.vectors, large.width, sigma as f32),
+        // Each pixel is its own mean, and a copy of a large sheet takes memory.
+        Filter::Bilateral if step == 1 => Coarse {
+            vectors: bilateral(&normals, width, sigma as f32),
+            width,
+            step,
+        },
+        Filter::Bilateral => {
+            let mut large = Coarse::new(&normals, width, step);
+            large.vectors = bilateral(&large.vectors, large.width, sigma as f32);
+            large
+        }
     };
     normals
         .par_chunks_mut(width)
@@ -165,10 +180,16 @@ fn unit(v: [f32; 3]) -> [f32; 3] {
 
 /// Vectors smoothed by a Gaussian of `sigma_px`; beyond the edge they go on as at it.
 pub fn gaussian(vectors: &[[f32; 3]], width: usize, sigma_px: f64) -> Vec<[f32; 3]> {
+    let mut smoothed = vectors.to_vec();
+    smooth(&mut smoothed, width, sigma_px);
+    smoothed
+}
+
+/// As [`gaussian`], in place: of a large sheet, vectors for each pixel take a quarter of all memory.
+fn smooth(vectors: &mut [[f32; 3]], width: usize, sigma_px: f64) {
     if width == 0 || vectors.is_empty() {
-        return Vec::new();
+        return;
     }
-    let mut smooth = vectors.to_vec();
     // A box of radius r with its ends at share a has the variance
     // (r(r+1)(2r+1)/3 + 2a(r+1)²)/(2r+1+2a): Gwosdek and others 2011.
     let variance = sigma_px * sigma_px / BOXES as f64;
@@ -177,22 +198,20 @@ pub fn gaussian(vectors: &[[f32; 3]], width: usize, sigma_px: f64) -> Vec<[f32; 
     let share = full * (radius * (radius + 1.0) - 3.0 * variance)
         / (6.0 * (variance - (radius + 1.0).powi(2)));
     let kernel = (radius as usize, share as f32);
-    for pass in 0..2 {
-        let line = if pass == 0 {
-            width
-        } else {
-            vectors.len() / width
-        };
-        smooth
-            .par_chunks_mut(line)
-            .for_each_init(Vec::new, |buffer, row| {
-                for _ in 0..BOXES {
-                    boxed(row, kernel, buffer);
-                }
-            });
-        smooth = transposed(&smooth, line);
-    }
-    smooth
+    let boxes = |line: &mut [[f32; 3]], buffer: &mut Vec<[f32; 3]>| {
+        for _ in 0..BOXES {
+            boxed(line, kernel, buffer);
+        }
+    };
+    vectors
+        .par_chunks_mut(width)
+        .for_each_init(Vec::new, |buffer, row| boxes(row, buffer));
+    let height = vectors.len() / width;
+    along_columns(vectors, width, |columns, buffer| {
+        for column in columns.chunks_exact_mut(height) {
+            boxes(column, buffer);
+        }
+    });
 }
 
 /// One box along a line, in place.

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::compare::{Comparison, PATCHES_MM, compare};
+use super::compare::{Comparison, PATCHES_MM, of_difference};
 use crate::{
     manifest::surface::SideSurface,
     maps::{
@@ -139,6 +139,9 @@ pub fn compared(
     mm_per_cell: f64,
     other: &OtherSurface,
 ) -> Result<Option<Comparison>, MapError> {
-    let other = heights(other, [width, um.len() / width.max(1)])?;
-    Ok(compare(um, &other, width, mm_per_cell, &PATCHES_MM))
+    // In their place: they take as much memory as `um`.
+    let mut off = heights(other, [width, um.len() / width.max(1)])?;
+    let places = off.par_iter_mut().zip(um);
+    places.for_each(|(off, um)| *off = um - *off);
+    Ok(of_difference(off, width, mm_per_cell, &PATCHES_MM))
 }

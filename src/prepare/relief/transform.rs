@@ -150,48 +150,74 @@ impl Line {
 
 /// Transforms a picture of `width` along its rows and its columns, in place.
 pub fn transform(picture: &mut [f64], width: usize, [across, down]: [&Line; 2], back: bool) {
-    along_rows(picture, width, across, back);
-    let height = picture.len() / width;
-    let mut turned = transposed(picture, width);
-    along_rows(&mut turned, height, down, back);
-    transpose_into(&turned, height, picture);
-}
-
-fn along_rows(picture: &mut [f64], width: usize, line: &Line, back: bool) {
     picture
         .par_chunks_mut(2 * width)
-        .for_each_init(Vec::new, |buffer, rows| {
-            let (a, b) = rows.split_at_mut(width);
-            if b.is_empty() {
-                line.apply(a, &mut vec![0.0; width], back, buffer);
-            } else {
-                line.apply(a, b, back, buffer);
-            }
-        });
+        .for_each_init(Vec::new, |buffer, rows| pairs(rows, across, back, buffer));
+    along_columns(picture, width, |columns, buffer| {
+        pairs(columns, down, back, buffer);
+    });
 }
 
-/// A picture of `width` with rows and columns exchanged.
-pub(super) fn transposed<T: Copy + Default + Send + Sync>(picture: &[T], width: usize) -> Vec<T> {
-    let mut turned = vec![T::default(); picture.len()];
-    transpose_into(picture, width, &mut turned);
-    turned
+/// Transforms lines one after another, two at a time.
+fn pairs(lines: &mut [f64], line: &Line, back: bool, buffer: &mut Vec<Complex64>) {
+    for pair in lines.chunks_mut(2 * line.length) {
+        let (a, b) = pair.split_at_mut(line.length);
+        if b.is_empty() {
+            line.apply(a, &mut vec![0.0; line.length], back, buffer);
+        } else {
+            line.apply(a, b, back, buffer);
+        }
+    }
 }
 
-/// As [`transposed`], into a picture of as many pixels.
-fn transpose_into<T: Copy + Send + Sync>(picture: &[T], width: usize, turned: &mut [T]) {
-    /// Of what is exchanged at once, so that both sides stay in a cache.
-    const TILE: usize = 32;
+/// Calls `work` with all columns of a picture of `width` as lines one after another, an even number
+/// of them at a time but for the last, and puts them back. A few are taken out at once: a second
+/// picture, with rows and columns exchanged, would take as much memory as the first. `work` may use a
+/// buffer that it finds as it left it, or empty.
+pub(super) fn along_columns<T, B>(
+    picture: &mut [T],
+    width: usize,
+    work: impl Fn(&mut [T], &mut B) + Sync,
+) where
+    T: Copy + Default + Send + Sync,
+    B: Default + Send,
+{
+    /// Columns that are taken out at once: a few lines of a cache in each row.
+    const TOGETHER: usize = 32;
+    /// Rows that are exchanged at once, so that both sides stay in a cache.
+    const TILE: usize = 8;
     let height = picture.len() / width;
-    turned
-        .par_chunks_mut(height * TILE)
-        .enumerate()
-        .for_each(|(tile, columns)| {
-            for top in (0..height).step_by(TILE) {
-                for (x, column) in columns.chunks_exact_mut(height).enumerate() {
-                    for y in top..(top + TILE).min(height) {
-                        column[y] = picture[y * width + tile * TILE + x];
+    let strips = width.div_ceil(TOGETHER);
+    let mut strips: Vec<Vec<&mut [T]>> = (0..strips).map(|_| Vec::with_capacity(height)).collect();
+    for row in picture.chunks_exact_mut(width) {
+        for (strip, part) in strips.iter_mut().zip(row.chunks_mut(TOGETHER)) {
+            strip.push(part);
+        }
+    }
+    strips.par_iter_mut().for_each_init(
+        || (Vec::new(), B::default()),
+        |(columns, buffer), strip| {
+            let count = strip.first().map_or(0, |part| part.len());
+            columns.resize(count * height, T::default());
+            for (tile, rows) in strip.chunks(TILE).enumerate() {
+                for x in 0..count {
+                    let start = x * height + tile * TILE;
+                    let column = &mut columns[start..start + rows.len()];
+                    for (value, row) in column.iter_mut().zip(rows) {
+                        *value = row[x];
                     }
                 }
             }
-        });
+            work(columns, buffer);
+            for (tile, rows) in strip.chunks_mut(TILE).enumerate() {
+                for x in 0..count {
+                    let start = x * height + tile * TILE;
+                    let column = &columns[start..start + rows.len()];
+                    for (value, row) in column.iter().zip(rows.iter_mut()) {
+                        row[x] = *value;
+                    }
+                }
+            }
+        },
+    );
 }

@@ -1,0 +1,171 @@
+//! The photographs of a side, band by band → its normals and albedo, and what else is gathered while
+//! they run through, so that each is read once.
+
+use std::path::Path;
+
+use super::{
+    PrepareError,
+    albedo::Albedo,
+    capture::{Capture, Light, Robustness, Shots},
+    colour::correct::Correction,
+    find,
+    flat_field::FlatField,
+    matter::Gathering,
+    moved::{self, Stillness},
+    photographs::Stack,
+    stereo::{
+        Response, Rig, Rows, Solver,
+        left_out::{LeftOut, Relit},
+    },
+};
+use crate::manifest::SideName;
+
+/// A side's photographs, and the lamps as they see them.
+pub(super) struct Side<'c> {
+    pub side: SideName,
+    pub shots: &'c Shots,
+    pub rig: Rig,
+}
+
+/// What came of them.
+pub(super) struct Solved {
+    pub normals: Vec<[f32; 3]>,
+    /// sRGB-encoded.
+    pub albedo: Vec<[u16; 3]>,
+    /// The factor that albedo was multiplied with where nothing says how bright the light was.
+    pub assumed_exposure: Option<f64>,
+    pub gathering: Gathering,
+    pub fields: Vec<FlatField>,
+    /// Median and 95th percentile of what the photographs leave over, in shares of their mean.
+    pub residual: [f64; 2],
+    /// The share of places at which a photograph was doubted.
+    pub doubted: f64,
+    pub relit: Option<Relit>,
+    pub stillness: Stillness,
+}
+
+/// Solves the photographs of a side. Unless it is known how `still` the camera was, that is found
+/// out too.
+///
+/// # Errors
+/// Of the first file that cannot be used, and [`PrepareError::Moved`].
+pub(super) fn solve_side(
+    capture: &Capture,
+    side: &Side<'_>,
+    still: Option<Stillness>,
+    correction: Option<&Correction>,
+    scratch: &Path,
+    tell: &mut dyn FnMut(&'static str, f64),
+) -> Result<Solved, PrepareError> {
+    let Side { side, shots, rig } = side;
+    tell("reading grey cards", 0.0);
+    let fields = find::flat_fields(capture, shots, scratch)?;
+    let solver = Solver {
+        rig: rig.clone(),
+        response: Response::laid_paper(),
+        robustness: capture.relief.against_outliers,
+    };
+    let size = [shots.crop.width(), shots.crop.height()];
+    let count = size[0] * size[1];
+    let measured = matches!(capture.lamps.light, Light::FlatField { .. }) || correction.is_some();
+    let mut normals: Vec<[f32; 3]> = Vec::with_capacity(count);
+    let mut albedo = Albedo::new(count, measured);
+    let mut residuals = Histogram::default();
+    let mut left_out = LeftOut::new(&solver, size[1]);
+    let mut doubted = 0;
+    let mut gathering = Gathering::new(capture, *side, shots);
+    let ambient = shots.ambient.as_deref();
+    let mut stack = Stack::open(
+        &shots.photographs,
+        ambient,
+        capture.encoding,
+        shots.crop,
+        scratch,
+    )?;
+    if let (None, Some(step)) = (&still, moved::step(shots)) {
+        stack.reduce(step);
+    }
+    while let Some(mut band) = stack.next()? {
+        band.divide(&fields);
+        let rows = Rows {
+            planes: &band.planes,
+            width: band.width,
+            top: band.top,
+        };
+        left_out.add(rows);
+        let mut solved = solver.solve(rows);
+        gathering.add(&band, &solved, rig);
+        if let Some(correction) = correction {
+            let [r, g, b] = &mut solved.albedo;
+            correction.apply_planes([r, g, b]);
+        }
+        normals.append(&mut solved.normal);
+        albedo.add(&solved.albedo);
+        solved.residual.iter().for_each(|r| residuals.add(*r));
+        doubted += solved.doubted;
+        tell(
+            "solving",
+            0.1 + 0.4 * (band.top + band.rows) as f64 / size[1] as f64,
+        );
+        stack.recycle(band);
+    }
+    let greys = stack.greys();
+    // Its buffers are as large as a map of its own.
+    drop(stack);
+    let stillness = match still {
+        Some(stillness) => stillness,
+        None => {
+            let towards = rig.standing.directions();
+            moved::check_seen(shots, &towards, capture.mm_per_px, greys)?
+        }
+    };
+    let (albedo, assumed_exposure) = albedo.finish();
+    Ok(Solved {
+        normals,
+        albedo,
+        assumed_exposure,
+        gathering,
+        fields,
+        residual: [residuals.quantile(0.5), residuals.quantile(0.95)],
+        doubted: match capture.relief.against_outliers {
+            Robustness::None => 0.0,
+            _ => doubted as f64 / count.max(1) as f64,
+        },
+        relit: left_out.relit(),
+        stillness,
+    })
+}
+
+/// Residuals counted in steps of a thousandth.
+struct Histogram {
+    counts: Vec<u64>,
+}
+
+impl Default for Histogram {
+    fn default() -> Self {
+        Self {
+            counts: vec![0; 1001],
+        }
+    }
+}
+
+impl Histogram {
+    fn add(&mut self, residual: f32) {
+        // Casts saturate, and NaN counts as none.
+        let step = ((residual * 1000.0) as usize).min(1000);
+        self.counts[step] += 1;
+    }
+
+    fn quantile(&self, share: f64) -> f64 {
+        let all: u64 = self.counts.iter().sum();
+        let wanted = share * all as f64;
+        let mut sum = 0;
+        for (step, count) in self.counts.iter().enumerate() {
+            sum += count;
+            if sum as f64 >= wanted {
+                return step as f64 / 1000.0;
+            }
+        }
+        1.0
+    }
+}
