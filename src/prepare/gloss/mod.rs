@@ -236,9 +236,9 @@ pub struct Settler<'m> {
 
 impl<'m> Settler<'m> {
     /// Of the class of `medium`.
-    pub fn new(model: &'m Model, medium: &Medium) -> Self {
+    pub fn new(model: &'m Model, medium: Option<&Medium>) -> Self {
         Self {
-            spot: model.spot(Some(medium)),
+            spot: model.spot(medium),
         }
     }
 
