@@ -16,7 +16,7 @@ use super::{
     find::{self, FoundLamps},
     flat_field::FlatFieldError,
     lights::{self, Ill, ball::NoBall, sphere::NoHighlight},
-    matter::{Bench, Gathering, MatterReport},
+    matter::{Bench, Gathering, MatterReport, surfaces},
     moved::{self, Moved, Stillness},
     photographs::{Stack, StackError},
     relief::{
@@ -28,7 +28,7 @@ use super::{
     report,
     stage::Stage,
     stereo::{
-        Gain, Response, Rig, Rows, Solver, Standing,
+        Gain, Rig, Rows, Solver, Standing,
         left_out::{LeftOut, Relit},
     },
     transmission::TransmissionError,
@@ -275,9 +275,11 @@ fn prepare_side(
 ) -> Result<(SideText, SideReport), PrepareError> {
     tell("reading grey cards", 0.0);
     let fields = find::flat_fields(capture, shots, scratch)?;
+    tell("looking at the surfaces", 0.02);
+    let surfaces = surfaces(capture, side, (shots, rig), correction, &fields, scratch)?;
     let solver = Solver {
         rig: rig.clone(),
-        response: Response::laid_paper(),
+        response: surfaces.response.clone(),
         robustness: capture.relief.against_outliers,
     };
     let size = [shots.crop.width(), shots.crop.height()];
@@ -287,7 +289,7 @@ fn prepare_side(
     let mut residuals = Histogram::default();
     let mut left_out = LeftOut::new(&solver, size[1]);
     let mut doubted = 0;
-    let mut gathering = Gathering::new(capture, side, shots);
+    let mut gathering = Gathering::new(capture, side, shots, surfaces);
     let ambient = shots.ambient.as_deref();
     let mut stack = Stack::open(
         &shots.photographs,
@@ -411,7 +413,7 @@ fn heights_of(slopes: Slopes, um_per_px: f64) -> Vec<f64> {
 
 /// What brings the brightest paper to a white sheet's albedo, where nothing says how bright the
 /// light was.
-fn exposure(green: &[f32]) -> f64 {
+pub(super) fn exposure(green: &[f32]) -> f64 {
     /// Of white paper.
     const WHITE: f64 = 0.85;
     /// What is brighter is a gleam.

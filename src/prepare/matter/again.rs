@@ -43,7 +43,7 @@ pub fn solve(
     }
     let settlers: Vec<Option<Settler<'_>>> = glossy
         .iter()
-        .map(|medium| medium.as_ref().map(|medium| Settler::new(model, Some(medium))))
+        .map(|medium| medium.as_ref().map(|medium| Settler::new(model, medium)))
         .collect();
     let shots = bench.shots;
     let ambient = shots.ambient.as_deref();
