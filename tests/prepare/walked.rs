@@ -15,6 +15,7 @@ use recto::{
     prepare::{
         Report,
         capture::Robustness,
+        gloss::first::{Seen, Surfaces, some_lamps},
         lights::direction,
         relief::compare::{compare, range, remove_plane},
         stereo::{Paper, Response, Rig, Rows, Solver, left_out::Relit},
@@ -375,48 +376,103 @@ fn photographs_under_lamps_exchanged_are_not_computed_from_each_other() {
     assert!(wrong.computed > 2.0 * right.computed, "{right:?} {wrong:?}");
 }
 
-/// Mean error of normals under the first four, eight and all lamps, `alpha` being what is known of
-/// the roughness; without it, the catalogue's laid paper is assumed, as `recto prepare` does.
-fn normal_errors(sheet: &Sheet, shadows: bool, alpha: Option<f64>) -> [f64; 3] {
+/// What is known of a sheet's surfaces before it is solved.
+#[derive(Clone, Copy, Debug)]
+enum Known {
+    /// Nothing: the catalogue's laid paper is assumed.
+    Nothing,
+    /// How rough its paper is; ink is taken for paper.
+    Paper,
+    /// What its photographs show, as `recto prepare` finds it.
+    Photographs,
+}
+
+/// As the photographs show them under some of the lamps.
+fn surfaces(sitting: &Sitting) -> Surfaces {
+    let towards = sitting.lamps.iter().map(|[a, e]| direction(*a, *e));
+    let rig = Rig::far(towards.collect());
+    let lamps = some_lamps(&rig);
+    let planes: Vec<[Vec<f32>; 3]> = lamps
+        .iter()
+        .map(|i| Photographer::default().planes(&sitting.frames[*i], *i as u64))
+        .collect();
+    let seen = |i: usize| Seen {
+        at: DVec2::from(middle(i)),
+        shown: planes
+            .iter()
+            .map(|planes| DVec3::from(planes.each_ref().map(|plane| f64::from(plane[i]))))
+            .collect(),
+    };
+    let places: Vec<Seen> = (0..COUNT).map(seen).collect();
+    Surfaces::new(&places, &rig.only(&lamps), &|_| 1.0, true)
+}
+
+/// Mean error of normals under the first four, eight and all lamps.
+fn normal_errors(sheet: &Sheet, shadows: bool, known: Known) -> [f64; 3] {
     [4, 8, LAMPS].map(|count| {
         let sitting = sitting(sheet, count, shadows);
-        let response = match alpha {
-            Some(alpha) => Response::Paper(Paper::new(alpha, INDEX, 1.0)),
-            None => Response::laid_paper(),
+        let response = match known {
+            Known::Nothing => Response::laid_paper(),
+            Known::Paper => Response::Paper(Paper::new(sheet.alpha[0], INDEX, 1.0)),
+            Known::Photographs => surfaces(&sitting).response,
         };
         let off = normal_error(sheet, &sitting, Photographer::default(), response);
-        eprintln!(
-            "walked, {}, {count} lamps, taken for {alpha:?}: {off:.3}°",
-            sheet.name
-        );
+        let name = sheet.name;
+        eprintln!("walked, {name}, {count} lamps, by {known:?}: {off:.3}°");
         off
     })
 }
 
 #[test]
-fn gloss_and_cast_shadows_are_seen_through_where_roughness_is_known() {
-    let known = normal_errors(&GLOSSY, true, Some(GLOSSY.alpha[0]));
-    assert!(known.iter().all(|off| *off < GLOSSY_DEG), "{known:?}");
-    // Taken for another paper, it is not: what is known makes the difference.
-    let assumed = normal_errors(&GLOSSY, true, None);
-    assert!(
-        (0..3).all(|i| assumed[i] > 1.5 * known[i]),
-        "{assumed:?} {known:?}"
-    );
-}
-
-#[test]
-#[ignore = "missed: 1.64°, 1.68°, 1.38°, nearly all of it in dark ink, as roughness .6 is assumed of a sheet of .5; told .5, 1.06°, 1.00°, .92°"]
 fn normals_of_a_matte_sheet_are_found() {
-    let off = normal_errors(&MATTE, false, None);
+    let off = normal_errors(&MATTE, false, Known::Photographs);
     assert!(off.iter().all(|off| *off < MATTE_DEG), "{off:?}");
+    // Assumed, the same surface misses it, and so does the right one with ink taken for paper.
+    let assumed = normal_errors(&MATTE, false, Known::Nothing);
+    assert!(assumed.iter().all(|off| *off > MATTE_DEG), "{assumed:?}");
+    let paper = normal_errors(&MATTE, false, Known::Paper);
+    assert!((0..3).all(|i| paper[i] > 1.5 * off[i]), "{paper:?} {off:?}");
 }
 
 #[test]
-#[ignore = "missed: 4.77°, 4.00°, 2.28°, as roughness .6 is assumed of a sheet of .25"]
 fn gloss_and_cast_shadows_are_seen_through() {
-    let off = normal_errors(&GLOSSY, true, None);
-    assert!(off.iter().all(|off| *off < GLOSSY_DEG), "{off:?}");
+    for sheet in [GLOSSY, OTHER] {
+        let off = normal_errors(&sheet, true, Known::Photographs);
+        assert!(off.iter().all(|off| *off < GLOSSY_DEG), "{off:?}");
+        // Taken for another paper, it is not: what is found makes the difference.
+        let assumed = normal_errors(&sheet, true, Known::Nothing);
+        assert!(
+            (0..3).all(|i| assumed[i] > 2.0 * off[i]),
+            "{assumed:?} {off:?}"
+        );
+    }
+}
+
+#[test]
+fn surfaces_are_found_before_anything_is_solved() {
+    /// Of a roughness.
+    const OFF: f64 = 0.04;
+    for (sheet, shadows) in [(MATTE, false), (GLOSSY, true), (OTHER, true)] {
+        let found = surfaces(&sitting(&sheet, LAMPS, shadows));
+        let dark = found.dark.expect("ink");
+        assert!(dark.is_film, "{}", sheet.name);
+        for (of, alpha) in [found.paper, dark.roughness].iter().zip(sheet.alpha) {
+            eprintln!("walked, {}: {of:?} of {alpha}", sheet.name);
+            let within = of.within.expect("a bound");
+            assert!((of.alpha - alpha).abs() < OFF.max(within), "{of:?} {alpha}");
+        }
+    }
+    // Without ink nothing is dark.
+    let mut bare = sitting(&MATTE, 8, false);
+    let paper: Vec<usize> = (0..COUNT).filter(|i| !MATTE.has_ink(*i)).collect();
+    for frame in &mut bare.frames {
+        for i in (0..COUNT).filter(|i| MATTE.has_ink(*i)) {
+            frame[i] = frame[paper[i * 7 % paper.len()]];
+        }
+    }
+    let found = surfaces(&bare);
+    assert!(found.dark.is_none(), "{:?}", found.dark);
+    assert!((found.paper.alpha - MATTE.alpha[0]).abs() < OFF);
 }
 
 #[test]
@@ -448,153 +504,4 @@ fn eight_bits_are_worse_than_sixteen() {
     );
     assert!(moved > 1e-3, "{moved}");
     assert!(eight > 1.02 * sixteen, "{eight} {sixteen}");
-}
-
-fn ink_medium(alpha: f64) -> recto::optics::medium::Medium {
-    let id: recto::optics::medium::MediumId = "iron-gall-ink".parse().unwrap();
-    let mut m = *id.medium();
-    let recto::optics::medium::Matter::Film(film) = &mut m.matter else {
-        unreachable!()
-    };
-    eprintln!("ink {} {}", film.roughness, film.index);
-    film.roughness = alpha;
-    film.index = INDEX;
-    m
-}
-
-#[test]
-#[ignore]
-fn lab() {
-    use recto::prepare::{
-        gloss::{Place, Settler, fit},
-        model::Model,
-    };
-    for sh in [MATTE, GLOSSY, OTHER] {
-        if !fixture_path(&name(&sh)).exists() {
-            continue;
-        }
-        let sheet = sh.name;
-        let alpha = sh.alpha[0];
-        for count in [4, 8, LAMPS] {
-            let sitting = sitting(&sh, count, sheet != "matte");
-            for noise in [5e-4, 0.0] {
-                let photographer = Photographer {
-                    noise,
-                    ..Photographer::default()
-                };
-                let planes: Vec<[Vec<f32>; 3]> = sitting
-                    .frames
-                    .iter()
-                    .enumerate()
-                    .map(|(i, frame)| photographer.planes(frame, i as u64))
-                    .collect();
-                let rig = Rig::far(
-                    sitting
-                        .lamps
-                        .iter()
-                        .map(|[a, e]| direction(*a, *e))
-                        .collect(),
-                );
-                let solve = |response| {
-                    Solver {
-                        rig: rig.clone(),
-                        response,
-                        robustness: Robustness::Robust,
-                    }
-                    .solve(Rows {
-                        planes: &planes,
-                        width: SIZE[0],
-                        top: 0,
-                    })
-                };
-                let err = |ns: &[DVec3]| {
-                    let mut s = [0.0; 2];
-                    let mut c = [0.0; 2];
-                    let mut b = [DVec2::ZERO; 2];
-                    for (i, n) in ns.iter().enumerate() {
-                        let [x, y] = middle(i);
-                        let k = usize::from(sh.has_ink(i));
-                        let t = sh.normal(x, y);
-                        s[k] += n.angle_between(t).to_degrees();
-                        // along slope
-                        let sl = DVec2::new(t.x / t.z, t.y / t.z);
-                        let f = DVec2::new(n.x / n.z, n.y / n.z);
-                        b[k] += DVec2::new(f.dot(sl), sl.dot(sl));
-                        c[k] += 1.0;
-                    }
-                    format!(
-                        "all {:.3} paper {:.3} ink {:.3} slope gain {:.3} {:.3}",
-                        (s[0] + s[1]) / COUNT as f64,
-                        s[0] / c[0],
-                        s[1] / c[1],
-                        b[0].x / b[0].y,
-                        b[1].x / b[1].y
-                    )
-                };
-                let ns = |s: &recto::prepare::stereo::Solved| -> Vec<DVec3> {
-                    s.normal
-                        .iter()
-                        .map(|n| DVec3::from(n.map(f64::from)))
-                        .collect()
-                };
-                let a = solve(Response::laid_paper());
-                let t = solve(Response::Paper(Paper::new(alpha, INDEX, 1.0)));
-                println!("{sheet} {count} noise {noise}: assumed {}", err(&ns(&a)));
-                println!("{sheet} {count} noise {noise}: true    {}", err(&ns(&t)));
-                let alb = |s: &recto::prepare::stereo::Solved, i: usize| {
-                    DVec3::new(
-                        s.albedo[0][i].into(),
-                        s.albedo[1][i].into(),
-                        s.albedo[2][i].into(),
-                    )
-                };
-                let place = |s: &recto::prepare::stereo::Solved, i: usize| Place {
-                    at: DVec2::from(middle(i)),
-                    shown: planes
-                        .iter()
-                        .map(|p| DVec3::new(p[0][i].into(), p[1][i].into(), p[2][i].into()))
-                        .collect(),
-                    normal: DVec3::from(s.normal[i].map(f64::from)),
-                    albedo: alb(s, i),
-                };
-                let ink = ink_medium(sh.alpha[1]);
-                let model = Model::laid(sh.paper.into())
-                    .unwrap()
-                    .with(|p| p.roughness = alpha);
-                let mut sp = Settler::new(&model, None);
-                let mut si = Settler::new(&model, Some(&ink));
-                let settled: Vec<DVec3> = (0..COUNT)
-                    .map(|i| {
-                        if sh.has_ink(i) {
-                            si.settle(&place(&t, i), &rig).0
-                        } else {
-                            sp.settle(&place(&t, i), &rig).0
-                        }
-                    })
-                    .collect();
-                println!("{sheet} {count} noise {noise}: settled {}", err(&settled));
-                if noise > 0.0 {
-                    let pp: Vec<Place> = (0..COUNT)
-                        .filter(|i| !sh.has_ink(*i))
-                        .step_by(8)
-                        .map(|i| place(&a, i))
-                        .collect();
-                    let pi: Vec<Place> = (0..COUNT)
-                        .filter(|i| sh.has_ink(*i))
-                        .step_by(3)
-                        .map(|i| place(&a, i))
-                        .collect();
-                    let model = Model::laid(sh.paper.into()).unwrap();
-                    let now = std::time::Instant::now();
-                    println!(
-                        "paper {:?} {:?}",
-                        fit(&model, None, None, &pp, &rig).0,
-                        now.elapsed()
-                    );
-                    let ink = ink_medium(0.45);
-                    println!("ink {:?}", fit(&model, None, Some(&ink), &pi, &rig).0);
-                }
-            }
-        }
-    }
 }

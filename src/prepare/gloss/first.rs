@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// Places that a fit takes.
-const PLACES: usize = 120;
+const PLACES: usize = 96;
 /// The fewest dark ones that have a surface of their own.
 const FEWEST: usize = 40;
 /// How much darker than paper they are, at least.

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::manifest::SideName;
 use crate::{
+    manifest::SideName,
     optics::medium::Matter,
     prepare::{
         PrepareError,

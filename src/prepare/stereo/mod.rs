@@ -267,11 +267,20 @@ impl Row<'_> {
     fn write(&mut self, places: &[usize], shown: &Shown, plain: bool) {
         for (lane, &x) in places.iter().enumerate() {
             self.normal[x] = [0, 1, 2].map(|c| shown.normal[c][lane]);
-            for c in 0..3 {
-                self.albedo[c][x] = shown.albedo[c][lane];
-            }
-            if plain {
-                self.residual[x] = shown.residual[lane];
+        }
+        let residual = plain.then_some((&mut *self.residual, &shown.residual));
+        let albedo = self.albedo.iter_mut().map(|plane| &mut **plane);
+        for (plane, lanes) in albedo.zip(&shown.albedo).chain(residual) {
+            let lanes = &lanes[..places.len()];
+            match places {
+                [first, .., last] if last - first + 1 == lanes.len() => {
+                    plane[*first..=*last].copy_from_slice(lanes);
+                }
+                _ => {
+                    for (&x, value) in places.iter().zip(lanes) {
+                        plane[x] = *value;
+                    }
+                }
             }
         }
     }
