@@ -17,7 +17,7 @@ use super::{
 };
 
 /// Rounds of a dark place.
-const DARK_ROUNDS: usize = 6;
+const DARK_ROUNDS: usize = 4;
 
 /// What of a colour counts when normals are solved: green has half of a camera's pixels, and the
 /// least noise.

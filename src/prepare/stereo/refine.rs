@@ -32,8 +32,8 @@ const DARK: [f32; 2] = [3e-3, 1e-4];
 const MOST: [f32; 2] = [0.7, 0.3];
 /// Steeper, a slope is a mistake.
 const STEEPEST: f32 = 3.0;
-/// A round that moves no slope by more is the last.
-const STILL: f32 = 1e-3;
+/// A round that moves no slope by more is the last: what is left then is less by far.
+const STILL: f32 = 4e-3;
 
 /// What has been found of places so far.
 #[derive(Clone)]
