@@ -63,7 +63,7 @@ impl Albedo {
 
 /// What brings the brightest paper to a white sheet's albedo, where nothing says how bright the
 /// light was.
-fn exposure(green: &[f32]) -> f64 {
+pub(super) fn exposure(green: &[f32]) -> f64 {
     /// Of white paper.
     const WHITE: f64 = 0.85;
     /// What is brighter is a gleam.

@@ -9,6 +9,7 @@
 //! | where the lamps are, and how bright | [`lights`] |
 //! | a lamp's light over the picture, from a grey card | [`flat_field`] |
 //! | a camera's colours → the sheet's | [`colour`] |
+//! | how rough paper and ink are, before stereo | [`gloss::first`] |
 //! | photographs under lamps → albedo and normals | [`stereo`] |
 //! | normals → the sheet's shape and its grain, in mm | [`relief`] |
 //! | the paper that maps are shown by, for fits that undo it | [`model`] |

@@ -72,6 +72,16 @@ impl Model {
         }))
     }
 
+    /// Films of ink in it.
+    pub fn film(&self) -> &ink::Film {
+        &self.study.film
+    }
+
+    /// Linear albedo of its bare places, without what their surface adds.
+    pub fn bare(&self) -> DVec3 {
+        self.surface.albedo - capture_floor(&self.surface, &self.mean)
+    }
+
     /// Its constants.
     pub fn paper(&self) -> PaperConstants {
         self.paper

@@ -10,11 +10,11 @@ use super::{
     colour::correct::Correction,
     find,
     flat_field::FlatField,
-    matter::Gathering,
+    matter::{Gathering, surfaces},
     moved::{self, Stillness},
     photographs::Stack,
     stereo::{
-        Response, Rig, Rows, Solver,
+        Rig, Rows, Solver,
         left_out::{LeftOut, Relit},
     },
 };
@@ -60,9 +60,11 @@ pub(super) fn solve_side(
     let Side { side, shots, rig } = side;
     tell("reading grey cards", 0.0);
     let fields = find::flat_fields(capture, shots, scratch)?;
+    tell("looking at the surfaces", 0.02);
+    let surfaces = surfaces(capture, *side, (*shots, rig), correction, &fields, scratch)?;
     let solver = Solver {
         rig: rig.clone(),
-        response: Response::laid_paper(),
+        response: surfaces.response.clone(),
         robustness: capture.relief.against_outliers,
     };
     let size = [shots.crop.width(), shots.crop.height()];
@@ -73,7 +75,7 @@ pub(super) fn solve_side(
     let mut residuals = Histogram::default();
     let mut left_out = LeftOut::new(&solver, size[1]);
     let mut doubted = 0;
-    let mut gathering = Gathering::new(capture, *side, shots);
+    let mut gathering = Gathering::new(capture, *side, shots, surfaces);
     let ambient = shots.ambient.as_deref();
     let mut stack = Stack::open(
         &shots.photographs,

@@ -320,7 +320,7 @@ pub fn heights(out: &Path, report: &Report) -> Vec<f64> {
 /// The value that a fixture's highest code stands for.
 const FIXTURE_FULL: f64 = 2.0;
 
-fn fixture_path(name: &str) -> PathBuf {
+pub fn fixture_path(name: &str) -> PathBuf {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures")).join(name)
 }
 

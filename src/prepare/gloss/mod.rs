@@ -11,10 +11,14 @@
 //! difference is put down to the albedo and the slope ([`Amendment`]), and every place of it gets
 //! what it is on these.
 //!
+//! Before stereo, the same is done for light and dark places as such ([`first`]): it divides their
+//! gloss out.
+//!
 //! Lamps of one height over an even surface show gloss and albedo as one: then nothing is least,
 //! the bound is wide, and the roughness stays assumed.
 
 mod amendment;
+pub mod first;
 mod place;
 mod samples;
 

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::first::Seen;
 use crate::prepare::{capture::Crop, materials::Known, photographs::Band};
 
 /// Places kept of a side, and of each swatch, in the first run through the photographs.
@@ -111,6 +112,20 @@ pub struct Sheet<'s> {
 }
 
 impl Samples {
+    /// All of them, as they were photographed.
+    pub fn seen(&self) -> Vec<Seen> {
+        let shown = self.shown.chunks(self.lamps.max(1));
+        let each = self.places.iter().zip(shown);
+        each.map(|([x, y], shown)| Seen {
+            at: DVec2::new(f64::from(*x) + 0.5, f64::from(*y) + 0.5),
+            shown: shown
+                .iter()
+                .map(|rgb| DVec3::from(rgb.map(f64::from)))
+                .collect(),
+        })
+        .collect()
+    }
+
     /// Places of a class that are surrounded by their own, at most as many as a fit takes, from
     /// all over.
     pub fn of_class(&self, class: u8, sheet: &Sheet<'_>) -> Vec<Place> {

@@ -3,6 +3,7 @@
 //!
 //! | step | where |
 //! |---|---|
+//! | what stereo is told of the surfaces | `surfaces` |
 //! | while the photographs run through | [`Gathering`] |
 //! | swatches → classes | [`super::materials`] |
 //! | roughness of each class | [`super::gloss`] |
@@ -15,6 +16,7 @@
 mod again;
 mod lines;
 mod page;
+mod surfaces;
 
 use std::path::Path;
 
@@ -27,7 +29,7 @@ use super::{
     colour::correct::Correction,
     depth::{self, InkDepth},
     flat_field::FlatField,
-    gloss::{self, Amendment, Roughness, Samples},
+    gloss::{self, Amendment, Roughness, Samples, first::Surfaces},
     materials::{
         self, Known, Materials,
         features::{Gloss, Seen},
@@ -47,6 +49,7 @@ use crate::{
 };
 pub(super) use lines::{drawing_lines, media_lines, paper_line, side_lines};
 pub(super) use page::{page, sources};
+pub(super) use surfaces::surfaces;
 
 /// The share of grains' or body colour's places, from the darkest, that cover the paper wholly.
 const COVERING: f64 = 0.1;
@@ -56,6 +59,8 @@ const COLOURED: usize = 50_000;
 /// What came of a side's materials.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MatterReport {
+    /// What normals and albedo were solved with.
+    pub surfaces: Option<Surfaces>,
     /// Linear albedo of the bare paper.
     pub paper_albedo: [f64; 3],
     /// `None` where no swatch names a medium of this side.
@@ -74,13 +79,14 @@ pub struct MatterReport {
 
 /// What is kept of photographs while they run through.
 pub(super) struct Gathering {
+    surfaces: Surfaces,
     swatches: Vec<Known>,
     gloss: Gloss,
     samples: Samples,
 }
 
 impl Gathering {
-    pub fn new(capture: &Capture, side: SideName, shots: &Shots) -> Self {
+    pub fn new(capture: &Capture, side: SideName, shots: &Shots, surfaces: Surfaces) -> Self {
         let crop = shots.crop;
         let within = |rect: Crop| Crop {
             left: rect.left.max(crop.left) - crop.left,
@@ -100,6 +106,7 @@ impl Gathering {
             .collect();
         let size = [crop.width(), crop.height()];
         Self {
+            surfaces,
             gloss: Gloss::default(),
             samples: Samples::new(size, shots.photographs.len(), &swatches),
             swatches,
@@ -130,6 +137,7 @@ impl Gathering {
         scratch: &Path,
     ) -> Result<MatterReport, PrepareError> {
         let Self {
+            surfaces,
             swatches,
             gloss,
             samples,
@@ -171,9 +179,10 @@ impl Gathering {
         };
         let (model, media) = side.measure(&mut report, &names, false);
         if let Some(model) = model {
-            side.solve_again(&model, &media, scratch)?;
+            side.solve_again(&model, &media, surfaces.paper.alpha, scratch)?;
         }
         let (model, media) = side.measure(&mut report, &names, materials.is_some());
+        report.surfaces = Some(surfaces);
         drop(samples);
         let Some(model) = model else {
             return Ok(report);
@@ -296,21 +305,20 @@ impl Sheet<'_, '_> {
         (Some(model), media)
     }
 
-    /// Solves films and body colours again whose surface differs from that of paper.
+    /// Solves films and body colours again whose surface differs from that of paper, which stereo
+    /// took for one of this roughness.
     fn solve_again(
         &mut self,
         model: &Model,
         media: &[Option<Medium>],
+        paper: f64,
         scratch: &Path,
     ) -> Result<(), PrepareError> {
         /// Nearer to each other, roughnesses turn no normal by a degree.
         const ALIKE: f64 = 0.05;
-        let Some(paper) = Model::laid(DVec3::ONE).map(|model| model.paper()) else {
-            return Ok(());
-        };
         let glossy = media.iter().map(|medium| {
             let of = medium.filter(|m| matches!(m.matter, Matter::Film(_) | Matter::Body(_)));
-            of.filter(|medium| (medium.roughness() - paper.roughness).abs() > ALIKE)
+            of.filter(|medium| (medium.roughness() - paper).abs() > ALIKE)
         });
         let glossy: Vec<Option<Medium>> = glossy.collect();
         let maps = again::Maps {

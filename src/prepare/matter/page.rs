@@ -8,6 +8,7 @@ use crate::{
     prepare::{
         Report, SideReport,
         capture::{BARE_PAPER, Capture},
+        gloss::{Roughness, first::Surfaces},
         materials::{Materials, features, legend, network, ways::Method},
     },
 };
@@ -70,6 +71,9 @@ pub fn page(side: &SideReport) -> String {
         None => {
             out += "<p>No swatch names a medium of this side: it has no map of media.</p>";
         }
+    }
+    if let Some(surfaces) = &matter.surfaces {
+        out += &of_surfaces(surfaces);
     }
     out += "<table><tr><th>Surface<th>Roughness α<th>±<th>The photographs leave over<th>Places";
     for of in &matter.roughness {
@@ -135,6 +139,30 @@ pub fn page(side: &SideReport) -> String {
         );
     }
     out
+}
+
+/// What normals were solved with.
+fn of_surfaces(surfaces: &Surfaces) -> String {
+    let told = |of: &Roughness| match of.within {
+        Some(within) => format!("{:.2} (fitted, ± {within:.2})", of.alpha),
+        None => format!("{:.2} (assumed)", of.alpha),
+    };
+    let dark = match &surfaces.dark {
+        None => "; hardly anything is darker than that".to_owned(),
+        Some(dark) => format!(
+            ", and {} of roughness {} where the albedo is below {:.2}",
+            match dark.is_film {
+                true => "as ink in it",
+                false => "as body colour on it",
+            },
+            told(&dark.roughness),
+            dark.below
+        ),
+    };
+    format!(
+        "<p>Normals and albedo were solved as those of paper of roughness {}{dark}.</p>",
+        told(&surfaces.paper)
+    )
 }
 
 fn of_materials(materials: &Materials) -> String {

@@ -64,7 +64,7 @@ impl Lamps {
                     lamps.l[i][c][lane] = l32[c];
                 }
                 lamps.gain[i][lane] = gain as f32;
-                if let Response::Paper(paper) = response {
+                if let Some(paper) = response.paper() {
                     lamps.fresnel[i][lane] = paper.fresnel(l);
                     let h: [f32; 3] = (l + DVec3::Z).normalize().as_vec3().into();
                     for c in 0..3 {
@@ -183,11 +183,11 @@ pub fn cosine(n: &Lane3, l: &Lane3) -> Lane {
 }
 
 /// Cosines below which the paper's response is not followed: nothing is seen of it there.
-const MU_FLOOR: f32 = 0.03;
+pub const MU_FLOOR: f32 = 0.03;
 
 /// What of a surface's response depends on the way to the eye alone.
 pub struct Leaving {
-    mu: Lane,
+    pub mu: Lane,
     /// √(α² + (1 − α²)μ²)
     masked: Lane,
     t: Lane,
@@ -224,7 +224,7 @@ pub struct Seen {
     pub gloss: Lane,
 }
 
-/// The response to the lamp `i` at normals `n`, with n·l = `mu`.
+/// The response to the lamp `i` at normals `n`, with n·l = `mu`, ink left out.
 pub fn response(
     paper: &Paper,
     n: &Lane3,

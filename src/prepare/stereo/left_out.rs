@@ -1,7 +1,7 @@
 //! Photographs that are left out of the fit, one after another, and computed from the others: what
 //! the maps are worth under a lamp that nobody photographed.
 
-use super::{Gain, Rig, Rows, Solver, Standing, relight};
+use super::{Rig, Rows, Solver, relight};
 use crate::prepare::lights::spread;
 
 /// The fewest lamps of which one can be left out.
@@ -46,9 +46,9 @@ impl LeftOut {
         let step = count.div_ceil(MOST).max(1);
         let lamps = (0..count).step_by(step).filter(|_| count >= FEWEST);
         let others = lamps.filter_map(|i| {
-            let rig = without(&solver.rig, i);
-            let (Standing::Far(places) | Standing::Near(places)) = &rig.standing;
-            let towards: Vec<_> = places.iter().map(|place| place.normalize()).collect();
+            let others: Vec<usize> = (0..count).filter(|other| *other != i).collect();
+            let rig = solver.rig.only(&others);
+            let towards = rig.standing.directions();
             let solver = Solver {
                 rig,
                 ..solver.clone()
@@ -140,14 +140,4 @@ impl LeftOut {
             photographs: self.others.len(),
         })
     }
-}
-
-fn without(rig: &Rig, lamp: usize) -> Rig {
-    let mut rig = rig.clone();
-    let (Standing::Far(places) | Standing::Near(places)) = &mut rig.standing;
-    places.remove(lamp);
-    if let Gain::Relative(intensities) = &mut rig.gain {
-        intensities.remove(lamp);
-    }
-    rig
 }

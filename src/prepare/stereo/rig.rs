@@ -71,6 +71,23 @@ impl Rig {
         matches!(self.standing, Standing::Far(_))
     }
 
+    /// These of its lamps alone.
+    #[must_use]
+    pub fn only(&self, lamps: &[usize]) -> Self {
+        let places = |all: &[DVec3]| lamps.iter().map(|i| all[*i]).collect();
+        Self {
+            standing: match &self.standing {
+                Standing::Far(all) => Standing::Far(places(all)),
+                Standing::Near(all) => Standing::Near(places(all)),
+            },
+            gain: match &self.gain {
+                Gain::FlatFielded => Gain::FlatFielded,
+                Gain::Relative(all) => Gain::Relative(lamps.iter().map(|i| all[*i]).collect()),
+            },
+            ..self.clone()
+        }
+    }
+
     /// The lamp `i` from a pixel whose middle is `at`, in pixels from the left and top edge.
     pub fn lamp(&self, i: usize, at: DVec2) -> Lit {
         let (l, nearer) = match &self.standing {
