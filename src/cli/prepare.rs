@@ -22,7 +22,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     warn(&warnings);
     output::can_write_folder(&arguments.out)?;
     let bar = output::long_progress(STEPS);
+    let mut told = "";
     let report = prepare::run(&capture, &arguments.out, &mut |progress| {
+        // Without a terminal there is no bar, and a large sheet takes minutes.
+        if bar.is_hidden() && progress.step != told {
+            told = progress.step;
+            output::say(format_args!("{:.0} %: {told}", 100.0 * progress.done));
+        }
         bar.set_message(progress.step);
         // A cast saturates.
         bar.set_position((progress.done * STEPS as f64) as u64);
@@ -47,6 +53,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             side.residual[0] * 100.0,
             side.doubted * 100.0
         ));
+        for doubt in &side.doubts {
+            output::say(format_args!("warning: {doubt}"));
+        }
         if let Some((_, by)) = stillness.farthest() {
             output::say(format_args!(
                 "the farthest shift of a photograph against the others is {:.2} pixels",

@@ -10,6 +10,11 @@ macro_rules! number {
         #[serde(transparent)]
         pub struct $name(pub f64);
 
+        impl $name {
+            #[allow(dead_code, reason = "most are asked for by decoding alone")]
+            pub const RANGE: std::ops::RangeInclusive<f64> = $min..=$max;
+        }
+
         impl $crate::manifest::decode::Decode for $name {
             fn allowed() -> String {
                 $crate::manifest::raw::values::number_allowed($min, $max, $unit)

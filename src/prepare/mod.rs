@@ -29,6 +29,7 @@ mod albedo;
 pub mod capture;
 pub mod colour;
 pub mod depth;
+pub mod exposed;
 pub mod find;
 pub mod flat_field;
 pub mod gloss;
@@ -47,6 +48,7 @@ mod solve;
 mod stage;
 pub mod stereo;
 pub mod transmission;
+pub mod turned;
 pub mod verso;
 mod write;
 

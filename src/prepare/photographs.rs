@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::{capture::Crop, flat_field::FlatField, reduced::Grey};
+use super::{capture::Crop, exposed::Tally, flat_field::FlatField, reduced::Grey};
 use crate::maps::{ColourEncoding, ColourRows, MapError};
 
 /// What a band may take in memory, in bytes.
@@ -39,6 +39,8 @@ pub struct Stack {
     spare: Vec<[Vec<f32>; 3]>,
     /// Of each photograph, where it was asked for.
     greys: Vec<Grey>,
+    /// Of each photograph.
+    tallies: Vec<Tally>,
 }
 
 /// Rows of all photographs of a stack.
@@ -117,6 +119,7 @@ impl Stack {
             done: 0,
             spare: Vec::new(),
             greys: Vec::new(),
+            tallies: vec![Tally::default(); paths.len()],
             band_rows: (most / bytes).clamp(1, 512),
         };
         stack.skip(crop.top as usize)?;
@@ -152,6 +155,11 @@ impl Stack {
     /// The photographs made smaller, once all bands have been read; none without [`Self::reduce`].
     pub fn greys(&mut self) -> Vec<Grey> {
         std::mem::take(&mut self.greys)
+    }
+
+    /// How much light the photographs hold, as far as they have been read, their room's included.
+    pub fn tallies(&self) -> &[Tally] {
+        &self.tallies
     }
 
     /// Takes back a band that is done with, for its memory.
@@ -209,7 +217,13 @@ impl Stack {
             .par_iter_mut()
             .zip(spare)
             .zip(greys)
-            .map(|((reader, spare), grey)| read(reader, spare, grey))
+            .zip(&mut self.tallies)
+            .map(|(((reader, spare), grey), tally)| {
+                let planes = read(reader, spare, grey)?;
+                let [r, g, b] = planes.each_ref().map(Vec::as_slice);
+                tally.add([r, g, b], reader.header().float);
+                Ok(planes)
+            })
             .collect();
         let mut planes = planes?;
         let ambient = self.ambient.as_mut().map(|reader| read(reader, None, None));

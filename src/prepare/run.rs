@@ -13,6 +13,7 @@ use super::{
         chart::ChartError,
         correct::{Correction, Fitted},
     },
+    exposed::Unusable,
     find::{self, FoundLamps},
     flat_field::FlatFieldError,
     lights::{self, Ill, ball::NoBall, sphere::NoHighlight},
@@ -30,7 +31,7 @@ use super::{
     stage::Stage,
     stereo::{Gain, Rig, Standing, left_out::Relit},
     transmission::TransmissionError,
-    verso,
+    turned, verso,
     write::{self, SideFiles, SideText},
 };
 use crate::{
@@ -56,6 +57,8 @@ pub enum PrepareError {
     NoBall { path: PathBuf, why: NoBall },
     #[error("the camera or the sheet moved: {}; photograph them again with nothing touched in between, or bring them to the place of the others and crop all alike", listed(.0))]
     Moved(Vec<Moved>),
+    #[error("{}; photograph these again, or leave them out with their lamps", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Unusable(Vec<Unusable>),
     #[error("{}: {why}; correct [lamps]", file.display())]
     Lamps { file: PathBuf, why: Ill },
     #[error("{}: {why}", path.display())]
@@ -133,6 +136,8 @@ pub struct SideReport {
     /// How well photographs that were left out of the fit are computed from the others; `None`
     /// with three lamps.
     pub relit: Option<Relit>,
+    /// What is to be said of the photographs and their lamps, a sentence each.
+    pub doubts: Vec<String>,
     /// The factor that albedo was multiplied with where nothing says how bright the light was.
     pub assumed_exposure: Option<f64>,
     /// Lowest and highest place of the shape at large in µm, its mean plane taken out.
@@ -159,16 +164,22 @@ pub fn run(
     if manifest.exists() {
         return Err(PrepareError::Exists(manifest));
     }
-    let existed = out.exists();
+    // Of the folders on the way there, those that are made here go again with it.
+    let made: Vec<&Path> = out
+        .ancestors()
+        .take_while(|folder| !folder.exists())
+        .collect();
     let folder = |path: &Path| {
         let path = path.to_owned();
         move |reason| PrepareError::Folder { path, reason }
     };
     fs::create_dir_all(out).map_err(folder(out))?;
     let result = staged(capture, out, progress);
-    if result.is_err() && !existed {
-        // Only if it is empty: somebody else may have put something there meanwhile.
-        let _ = fs::remove_dir(out);
+    if result.is_err() {
+        for folder in made {
+            // Only if it is empty: somebody else may have put something there meanwhile.
+            let _ = fs::remove_dir(folder);
+        }
     }
     result
 }
@@ -272,7 +283,7 @@ fn lamps_found(lamps: &FoundLamps, rig: Option<&Rig>) -> Vec<LampFound> {
 fn prepare_side(
     capture: &Capture,
     of: &Side<'_>,
-    solved: Solved,
+    mut solved: Solved,
     correction: Option<&Correction>,
     scratch: &Path,
     tell: &mut dyn FnMut(&'static str, f64),
@@ -283,8 +294,17 @@ fn prepare_side(
         mut normals,
         albedo: mut encoded,
         assumed_exposure,
+        ref mut doubts,
         ..
     } = solved;
+    let mut doubts = std::mem::take(doubts);
+    if turned::by_a_quarter(&normals, shots.crop.width()) {
+        doubts.push(
+            "the slopes found turn around as no surface's do: lamps are probably a quarter of a turn away from \
+             where [lamps] says, or the photographs in another order"
+                .to_owned(),
+        );
+    }
     let size = [shots.crop.width(), shots.crop.height()];
     tell("materials", 0.5);
     let maps = SideFiles::new(side, size, capture, scratch)?;
@@ -351,6 +371,7 @@ fn prepare_side(
         residual: solved.residual,
         doubted: solved.doubted,
         relit: solved.relit,
+        doubts,
         assumed_exposure,
         shape_um,
         grain_um,

@@ -8,7 +8,7 @@ use super::{
     albedo::Albedo,
     capture::{Capture, Light, Robustness, Shots},
     colour::correct::Correction,
-    find,
+    exposed, find,
     flat_field::FlatField,
     matter::{Gathering, surfaces},
     moved::{self, Stillness},
@@ -41,6 +41,8 @@ pub(super) struct Solved {
     /// The share of places at which a photograph was doubted.
     pub doubted: f64,
     pub relit: Option<Relit>,
+    /// What is to be said of how the photographs are exposed.
+    pub doubts: Vec<String>,
     pub stillness: Stillness,
 }
 
@@ -112,6 +114,8 @@ pub(super) fn solve_side(
         stack.recycle(band);
     }
     let greys = stack.greys();
+    exposed::check(&shots.photographs, stack.tallies()).map_err(PrepareError::Unusable)?;
+    let doubts = exposed::doubts(&shots.photographs, stack.tallies());
     // Its buffers are as large as a map of its own.
     drop(stack);
     let stillness = match still {
@@ -134,6 +138,7 @@ pub(super) fn solve_side(
             _ => doubted as f64 / count.max(1) as f64,
         },
         relit: left_out.relit(),
+        doubts,
         stillness,
     })
 }

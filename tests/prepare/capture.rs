@@ -172,6 +172,39 @@ fn what_is_there_twice_is_told() {
 }
 
 #[test]
+fn a_sheet_is_neither_a_speck_nor_a_field_and_cards_are_of_its_photographs() {
+    let folder = written(&FILES);
+    for (scale, told) in [
+        ("mm_per_px = 0.001", "0.06 × 0.05 mm"),
+        ("mm_per_px = 9", "sides of"),
+    ] {
+        let text = FOUR.replace("scale.dpi = 600", &format!("scale.{scale}"));
+        match told {
+            "sides of" => assert!(
+                Capture::parse(&folder.path().join("capture.toml"), &text).is_ok(),
+                "576 mm are a sheet"
+            ),
+            told => {
+                let fault = fault(folder.path(), &text);
+                assert!(
+                    fault.path == "scale" && fault.found.contains(told),
+                    "{fault}"
+                );
+            }
+        }
+    }
+    for name in ["v1.png", "v2.png", "v3.png", "v4.png"] {
+        picture(&folder.path().join(name), [60, 40]);
+    }
+    let verso = "[verso]\nphotographs = [\"v1.png\", \"v2.png\", \"v3.png\", \"v4.png\"]\n";
+    let other = fault(folder.path(), &format!("{FOUR}{verso}"));
+    assert!(
+        other.path == "lamps.flat_field" && other.allowed.contains("60 × 40"),
+        "{other}"
+    );
+}
+
+#[test]
 fn lamps_have_to_stand_around_the_sheet() {
     let folder = written(&FILES);
     let told = |text: &str| {

@@ -370,6 +370,19 @@ fn what_fails_leaves_nothing_behind() {
     let told = fails(&studio.text().replace("\"chart.png\"", "\"dull.png\""));
     assert!(told.contains("dull.png"), "{told}");
     // Lamps that a ball shows in one place.
+    // A lamp that did not fire, and one that was too bright.
+    for (name, light, word) in [
+        ("dark.png", 0.0, "black"),
+        ("bright.png", 9.0, "over-exposed"),
+    ] {
+        studio.save(name, [WIDTH, HEIGHT], |_, _| DVec3::splat(light));
+        let told = fails(
+            &studio
+                .text()
+                .replace("\"recto-2.png\"", &format!("\"{name}\"")),
+        );
+        assert!(told.contains(name) && told.contains(word), "{told}");
+    }
     for name in ["again-1.png", "again-2.png"] {
         // What lies behind a picture's end is no part of it.
         let mut file = std::fs::read(studio.path("ball-0.png")).expect("a ball");

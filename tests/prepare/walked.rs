@@ -85,8 +85,8 @@ const GLOSSY: Sheet = Sheet {
     ..MATTE
 };
 
-/// Another relief, other paper and darker ink, each of a roughness of its own: nothing was adjusted
-/// by it.
+/// Another relief, other paper and darker ink, each of a roughness of its own. How many places and
+/// rounds there are was chosen with an eye on it; no constant of the optics was.
 const OTHER: Sheet = Sheet {
     name: "other",
     alpha: [0.7, 0.35],

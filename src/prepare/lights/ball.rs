@@ -30,6 +30,8 @@ const RADIUS_STEP: f64 = 1.03;
 const SEEN: f64 = 0.6;
 /// Of a ball that reaches out of the picture, the part that must be in it to tell.
 const PART_INSIDE: f64 = 0.4;
+/// The least side of a picture, in its pixels, that a ball is looked for in.
+const LEAST_SIDE: usize = 16;
 /// Directions that outlines are looked at in.
 const DIRECTIONS: usize = 120;
 /// Votes that are looked at closer.
@@ -53,7 +55,7 @@ const MIRRORED: f64 = 0.35;
 /// Why no ball was found.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoBall {
-    #[error("no glossy ball is seen")]
+    #[error("no glossy ball is seen whole, with a highlight under each lamp")]
     None,
     #[error("the round outline at {:.0}, {:.0} with radius {:.0} shows no highlight under each lamp, as a glossy ball does", .0.centre.x, .0.centre.y, .0.radius)]
     Dull(Circle),
@@ -109,6 +111,10 @@ pub fn scaled(circle: Circle, step: f64) -> Circle {
 /// # Errors
 /// [`NoBall`].
 pub fn find(pictures: &[Vec<f32>], size: [usize; 2]) -> Result<Circle, NoBall> {
+    // Of nothing, or a line of pixels, there are no edges to look at.
+    if size.iter().any(|side| *side < LEAST_SIDE) {
+        return Err(NoBall::None);
+    }
     let edges = Edges::new(size, pictures.iter().map(Vec::as_slice));
     let mut balls: Vec<(Circle, f64)> = Vec::new();
     let (mut outside, mut dull) = (None, None);

@@ -23,6 +23,9 @@ const FEWEST: usize = 4;
 /// The largest share of the ball that a lamp covers; more is overexposure or a white ball.
 const LARGEST_SHARE: f64 = 0.25;
 
+/// Sine of the lowest elevation of a lamp: that of 1°, as a capture file allows.
+const LOWEST: f64 = 0.0174;
+
 /// Why a ball shows no lamp.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoHighlight {
@@ -30,6 +33,8 @@ pub enum NoHighlight {
     Outside,
     #[error("the ball shows no highlight")]
     None,
+    #[error("the highlight at {:.0}, {:.0} is that of a lamp below the sheet; the ball's outline is another one, or the highlight is the room's", .0.x, .0.y)]
+    Below(DVec2),
     #[error("{0:.0} % of the ball are white: it is overexposed, or not a glossy ball")]
     Overexposed(f64),
 }
@@ -110,9 +115,13 @@ pub fn highlight(
         return Err(NoHighlight::None);
     }
     let at = DVec2::new(x + 0.5, y + 0.5);
+    let direction = mirrored(at, circle);
+    if direction.z < LOWEST {
+        return Err(NoHighlight::Below(at));
+    }
     Ok(Highlight {
         at,
-        direction: mirrored(at, circle),
+        direction,
         pixels: xs.len(),
     })
 }

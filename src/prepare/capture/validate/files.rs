@@ -21,9 +21,10 @@ use crate::{
 };
 
 /// What cameras call their raw files.
-const RAW_EXTENSIONS: [&str; 20] = [
-    "3fr", "arw", "cr2", "cr3", "crw", "dcr", "dng", "erf", "fff", "iiq", "kdc", "mef", "mos",
-    "mrw", "nef", "orf", "pef", "raf", "rw2", "x3f",
+const RAW_EXTENSIONS: [&str; 27] = [
+    "3fr", "arw", "cr2", "cr3", "crw", "dcr", "dng", "erf", "fff", "gpr", "iiq", "kdc", "mef",
+    "mos", "mrw", "nef", "nrw", "orf", "pef", "raf", "raw", "rw2", "rwl", "sr2", "srf", "srw",
+    "x3f",
 ];
 
 /// How a raw file becomes a picture that is read here.

@@ -226,7 +226,7 @@ impl Validator<'_, '_> {
         &mut self,
         placed: Placed,
         raw: &RawLamps,
-        recto: Option<&Shots>,
+        [recto, verso]: [Option<&Shots>; 2],
         trail: &Trail,
     ) -> Option<Lamps> {
         let count = placed.count(recto)?;
@@ -264,7 +264,7 @@ impl Validator<'_, '_> {
             let edges = [circle.centre.x, circle.centre.y, circle.radius];
             sound &= self.inside(edges, recto.size, &trail.key("sphere").key("circle_px"));
         }
-        let light = self.light(raw, count, recto, trail);
+        let light = self.light(raw, count, [recto, verso], trail);
         sound.then_some(Lamps {
             places,
             count,
@@ -294,7 +294,7 @@ impl Validator<'_, '_> {
         &mut self,
         raw: &RawLamps,
         count: usize,
-        recto: Option<&Shots>,
+        [recto, verso]: [Option<&Shots>; 2],
         trail: &Trail,
     ) -> Option<Light> {
         if let Some(list) = &raw.flat_field {
@@ -303,7 +303,19 @@ impl Validator<'_, '_> {
             let like = recto.map(|recto| (recto.size, recto.photographs[0].as_path()));
             let (photographs, size) = self.photographs(list, &key, like);
             many?;
-            size?;
+            let size = size?;
+            if let Some(verso) = verso.filter(|verso| verso.size != size) {
+                let words = Words::new(
+                    format!("{} × {} pixels of a grey card", size[0], size[1]),
+                    format!(
+                        "{} × {} pixels, as the verso's photographs have",
+                        verso.size[0], verso.size[1]
+                    ),
+                    "photograph both sides and the card with one camera that is not moved, or leave the grey cards out",
+                );
+                self.report.fault(&key, words);
+                return None;
+            }
             return (!list.has_holes()).then_some(Light::FlatField {
                 photographs,
                 reflectance: raw.grey_card.map_or(GREY_CARD, |card| card.0),

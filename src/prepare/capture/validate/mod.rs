@@ -15,11 +15,11 @@ use super::{
 use crate::{
     manifest::{
         Pattern, SideName,
-        decode::{List, Report},
+        decode::{Decode, List, Report},
         did_you_mean,
         document::{Trail, Words},
         quote, quoted_list,
-        raw::values::PixelPx,
+        raw::values::{PixelPx, SheetMm},
     },
     maps::surface::load_gltf,
     optics::{
@@ -62,8 +62,11 @@ impl Validator<'_, '_> {
                 self.one_each(verso, count, &root.key("verso"));
             }
         }
-        let lamps =
-            placed.and_then(|placed| self.lamps(placed, &raw.lamps, recto.as_ref(), &lamps_trail));
+        let sides = [recto.as_ref(), verso.as_ref().and_then(Option::as_ref)];
+        let lamps = placed.and_then(|placed| self.lamps(placed, &raw.lamps, sides, &lamps_trail));
+        if let Some(mm) = mm_per_px {
+            self.extent(mm, sides[0], &root.key("scale"));
+        }
         let size = recto.as_ref().map(|shots| shots.size);
         let chart = raw.chart.as_ref();
         let chart = chart.map(|chart| self.chart(chart, &root.key("chart")));
@@ -122,6 +125,29 @@ impl Validator<'_, '_> {
             return None;
         }
         Some(ruler.length_mm.0 / length_px)
+    }
+
+    /// A sheet is of a size that an exhibit can have.
+    fn extent(&mut self, mm_per_px: f64, recto: Option<&Shots>, trail: &Trail) {
+        let Some(crop) = recto.map(|recto| recto.crop) else {
+            return;
+        };
+        let size = [crop.width(), crop.height()].map(|px| px as f64 * mm_per_px);
+        if size.iter().all(|mm| SheetMm::RANGE.contains(mm)) {
+            return;
+        }
+        let words = Words::new(
+            format!(
+                "a sheet of {:.2} × {:.2} mm, by {} × {} pixels",
+                size[0],
+                size[1],
+                crop.width(),
+                crop.height()
+            ),
+            format!("sides of {}", SheetMm::allowed()),
+            "correct the scale, or crop_px where it leaves hardly anything",
+        );
+        self.report.fault(trail, words);
     }
 
     /// Of a side; `named` are the photographs that a file of lamps names.

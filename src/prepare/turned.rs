@@ -1,0 +1,90 @@
+//! Lamps that are taken for others a quarter of a turn away.
+//!
+//! The slopes of a surface have no curl. Turned by a quarter they have nothing else: what was its divergence is
+//! their curl. (Turned by a half, hills become hollows, which no photograph contradicts.)
+
+/// Slopes are looked at over so many pixels at once, for their noise.
+const CELL: usize = 4;
+/// By how much curl is stronger than divergence, in squares, where lamps are turned. Of noise alone both are alike.
+const MOST: f64 = 3.0;
+/// Steeper places say more of shadows than of the surface.
+const STEEPEST: f64 = 2.0;
+
+/// Whether unit normals (x right, y up, z out) in rows of `width` from the top are turned by a quarter.
+pub fn by_a_quarter(normals: &[[f32; 3]], width: usize) -> bool {
+    let size = [width / CELL, normals.len() / width.max(1) / CELL];
+    if size[0] < 3 || size[1] < 3 {
+        return false;
+    }
+    let cells: Vec<[f64; 2]> = (0..size[0] * size[1])
+        .map(|i| {
+            let (left, top) = (i % size[0] * CELL, i / size[0] * CELL);
+            let mut sum = [0.0; 2];
+            for y in top..top + CELL {
+                for [nx, ny, nz] in &normals[y * width + left..y * width + left + CELL] {
+                    let up = f64::from(nz.max(0.05));
+                    // Down the rows, height falls where the normal leans down.
+                    sum[0] -= (f64::from(*nx) / up).clamp(-STEEPEST, STEEPEST);
+                    sum[1] += (f64::from(*ny) / up).clamp(-STEEPEST, STEEPEST);
+                }
+            }
+            sum.map(|v| v / (CELL * CELL) as f64)
+        })
+        .collect();
+    let at = |x: usize, y: usize| cells[y * size[0] + x];
+    let (mut curl, mut divergence) = (0.0, 0.0);
+    for y in 1..size[1] - 1 {
+        for x in 1..size[0] - 1 {
+            let [right, left] = [at(x + 1, y), at(x - 1, y)];
+            let [below, above] = [at(x, y + 1), at(x, y - 1)];
+            let turns = (below[0] - above[0]) - (right[1] - left[1]);
+            let spreads = (right[0] - left[0]) + (below[1] - above[1]);
+            if turns.is_finite() && spreads.is_finite() {
+                curl += turns * turns;
+                divergence += spreads * spreads;
+            }
+        }
+    }
+    curl > MOST * divergence
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
+    use rand_distr::{Distribution, Normal};
+
+    use super::*;
+
+    /// Of hills, with noise, each normal turned by so many quarters.
+    fn normals(hills: f64, noise: f64, quarters: usize) -> Vec<[f32; 3]> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
+        let spread = Normal::new(0.0, noise).expect("a spread");
+        (0..96 * 80)
+            .map(|i| {
+                let (x, y) = ((i % 96) as f64, (i / 96) as f64);
+                let slope = [
+                    hills * (x / 7.0).cos() * (y / 9.0).cos(),
+                    -hills * (x / 7.0).sin() * (y / 9.0).sin() * 7.0 / 9.0,
+                ];
+                let [mut a, mut b] = slope.map(|v| v + spread.sample(&mut random));
+                for _ in 0..quarters {
+                    (a, b) = (-b, a);
+                }
+                DVec3::new(-a, b, 1.0).normalize().as_vec3().into()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_quarter_is_seen_and_nothing_else_is_taken_for_one() {
+        for quarters in 0..4 {
+            let turned = by_a_quarter(&normals(0.2, 0.05, quarters), 96);
+            assert_eq!(turned, quarters % 2 == 1, "{quarters}");
+        }
+        // A flat sheet's noise says nothing, nor do a few pixels.
+        assert!(!by_a_quarter(&normals(0.0, 0.1, 1), 96));
+        assert!(!by_a_quarter(&normals(0.2, 0.0, 1)[..50], 10));
+        assert!(!by_a_quarter(&[], 0));
+    }
+}
