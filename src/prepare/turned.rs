@@ -3,8 +3,9 @@
 //! The slopes of a surface have no curl. Turned by a quarter they have nothing else: what was its divergence is
 //! their curl. (Turned by a half, hills become hollows, which no photograph contradicts.)
 
-/// Slopes are looked at over so many pixels at once, for their noise.
-const CELL: usize = 4;
+/// Slopes are looked at over so many pixels at once: the finest has the paper's grain, where the coarser ones have
+/// less noise.
+const CELLS: [usize; 3] = [1, 2, 4];
 /// By how much curl is stronger than divergence, in squares, where lamps are turned. Of noise alone both are alike.
 const MOST: f64 = 3.0;
 /// Steeper places say more of shadows than of the surface.
@@ -12,23 +13,33 @@ const STEEPEST: f64 = 2.0;
 
 /// Whether unit normals (x right, y up, z out) in rows of `width` from the top are turned by a quarter.
 pub fn by_a_quarter(normals: &[[f32; 3]], width: usize) -> bool {
-    let size = [width / CELL, normals.len() / width.max(1) / CELL];
-    if size[0] < 3 || size[1] < 3 {
-        return false;
+    CELLS
+        .iter()
+        .filter_map(|cell| curl_and_divergence(normals, width, *cell))
+        .any(|[curl, divergence]| curl > MOST * divergence)
+}
+
+/// Sums of their squares over squares of `cell` pixels; `None` where these are too few.
+fn curl_and_divergence(normals: &[[f32; 3]], width: usize, cell: usize) -> Option<[f64; 2]> {
+    /// Along each side.
+    const FEWEST: usize = 12;
+    let size = [width / cell, normals.len() / width.max(1) / cell];
+    if size.iter().any(|side| *side < FEWEST) {
+        return None;
     }
     let cells: Vec<[f64; 2]> = (0..size[0] * size[1])
         .map(|i| {
-            let (left, top) = (i % size[0] * CELL, i / size[0] * CELL);
+            let (left, top) = (i % size[0] * cell, i / size[0] * cell);
             let mut sum = [0.0; 2];
-            for y in top..top + CELL {
-                for [nx, ny, nz] in &normals[y * width + left..y * width + left + CELL] {
+            for y in top..top + cell {
+                for [nx, ny, nz] in &normals[y * width + left..y * width + left + cell] {
                     let up = f64::from(nz.max(0.05));
                     // Down the rows, height falls where the normal leans down.
                     sum[0] -= (f64::from(*nx) / up).clamp(-STEEPEST, STEEPEST);
                     sum[1] += (f64::from(*ny) / up).clamp(-STEEPEST, STEEPEST);
                 }
             }
-            sum.map(|v| v / (CELL * CELL) as f64)
+            sum.map(|v| v / (cell * cell) as f64)
         })
         .collect();
     let at = |x: usize, y: usize| cells[y * size[0] + x];
@@ -45,7 +56,7 @@ pub fn by_a_quarter(normals: &[[f32; 3]], width: usize) -> bool {
             }
         }
     }
-    curl > MOST * divergence
+    Some([curl, divergence])
 }
 
 #[cfg(test)]
