@@ -322,7 +322,7 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
     match fitted {
         None => Err(refused(ChartError::Flat)),
         // NaN is no colour of the chart's either.
-        Some(fitted) if !(fitted.off() <= MOST_OFF) => {
+        Some(fitted) if fitted.off().is_nan() || fitted.off() > MOST_OFF => {
             Err(refused(ChartError::Unlike(fitted.off())))
         }
         Some(fitted) => Ok(Some(fitted)),

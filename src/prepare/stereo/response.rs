@@ -33,6 +33,10 @@ use crate::{
 
 /// What light does at a surface.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there is one of it for a whole sheet"
+)]
 pub enum Response {
     /// A perfect diffuser of some albedo.
     Lambert,
