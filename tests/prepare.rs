@@ -12,6 +12,8 @@ mod chain;
 mod chart;
 #[path = "prepare/colour.rs"]
 mod colour;
+#[path = "prepare/creased.rs"]
+mod creased;
 #[path = "prepare/gloss.rs"]
 mod gloss;
 #[path = "prepare/interrupted.rs"]
@@ -28,10 +30,14 @@ mod memory;
 mod model;
 #[path = "prepare/moved.rs"]
 mod moved;
+#[path = "prepare/page.rs"]
+mod page;
 #[path = "prepare/photographs.rs"]
 mod photographs;
 #[path = "prepare/relief.rs"]
 mod relief;
+#[path = "prepare/reported.rs"]
+mod reported;
 #[path = "prepare/ruler.rs"]
 mod ruler;
 #[path = "prepare/shown.rs"]
@@ -42,6 +48,8 @@ mod sitting;
 mod stereo;
 #[path = "prepare/transmission.rs"]
 mod transmission;
+#[path = "prepare/verdicts.rs"]
+mod verdicts;
 #[path = "prepare/verso.rs"]
 mod verso;
 #[path = "prepare/walked.rs"]

@@ -53,9 +53,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             side.residual[0] * 100.0,
             side.doubted * 100.0
         ));
-        for doubt in &side.doubts {
-            output::say(format_args!("warning: {doubt}"));
-        }
         if let Some((_, by)) = stillness.farthest() {
             output::say(format_args!(
                 "the farthest shift of a photograph against the others is {:.2} pixels",
@@ -71,6 +68,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(verso) = &report.verso {
         output::say(format_args!("place of the verso {}", verso.told()));
+    }
+    for doubt in report.doubts() {
+        output::say(format_args!("warning: {doubt}"));
     }
     output::result(report.manifest.display())
 }

@@ -20,7 +20,9 @@
 //! | these four for a side | [`matter`] |
 //! | a verso's place on its recto | [`verso`] |
 //! | the photographs of a side, run through once: normals, albedo, and the rest | `solve`, `albedo` |
+//! | what the photographs leave over, counted | [`residuals`] |
 //! | all of it, as a command does it | [`run`] |
+//! | what came of it: a verdict, plots and pictures on one page | [`report`] |
 //!
 //! Lamps and normals are in the sheet's frame: x right, y up in the photograph, z towards the
 //! camera; a photograph's rows run down from its top.
@@ -42,7 +44,8 @@ pub mod moved;
 pub mod photographs;
 pub mod reduced;
 pub mod relief;
-mod report;
+pub mod report;
+pub mod residuals;
 mod run;
 mod solve;
 mod stage;

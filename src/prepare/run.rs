@@ -8,7 +8,7 @@ use std::{
 use rayon::prelude::*;
 
 use super::{
-    capture::{Capture, Circle, Shots},
+    capture::{Capture, Circle, Integration, Shots},
     colour::{
         chart::ChartError,
         correct::{Correction, Fitted},
@@ -23,13 +23,17 @@ use super::{
     relief::{
         compare::{Comparison, range, remove_plane},
         filter::{Coarse, Split, split},
-        integrate::{Slopes, integrate_free},
+        integrate::{Perimeter, Slopes, integrate, integrate_free, integrate_robust},
         surface,
     },
     report,
+    residuals::Residuals,
     solve::{Side, Solved, solve_side},
     stage::Stage,
-    stereo::{Gain, Rig, Standing, left_out::Relit},
+    stereo::{
+        Gain, Rig, Standing,
+        left_out::{Relit, RelitOne},
+    },
     transmission::TransmissionError,
     turned, verso,
     write::{self, SideFiles, SideText},
@@ -97,6 +101,8 @@ pub struct Progress {
 pub struct Report {
     /// The manifest that shows the sheet.
     pub manifest: PathBuf,
+    /// The side of a pixel on the sheet in mm.
+    pub mm_per_px: f64,
     /// In the order of the photographs.
     pub lamps: Vec<LampFound>,
     /// The ball that they were found in.
@@ -131,6 +137,8 @@ pub struct SideReport {
     pub size: [usize; 2],
     /// Median and 95th percentile of what the photographs leave over, in shares of their mean.
     pub residual: [f64; 2],
+    /// All of what they leave over; 0 everywhere with three lamps.
+    pub residuals: Residuals,
     /// The share of places at which a photograph was doubted.
     pub doubted: f64,
     /// How well photographs that were left out of the fit are computed from the others; `None`
@@ -138,9 +146,12 @@ pub struct SideReport {
     pub relit: Option<Relit>,
     /// What is to be said of the photographs and their lamps, a sentence each.
     pub doubts: Vec<String>,
+    /// The same of each photograph that was left out.
+    pub relit_each: Vec<RelitOne>,
     /// The factor that albedo was multiplied with where nothing says how bright the light was.
     pub assumed_exposure: Option<f64>,
-    /// Lowest and highest place of the shape at large in µm, its mean plane taken out.
+    /// Lowest and highest place of the shape at large in µm, its mean plane taken out unless its
+    /// perimeter was held at 0.
     pub shape_um: [f64; 2],
     /// Of grain and strokes.
     pub grain_um: [f64; 2],
@@ -240,6 +251,7 @@ fn staged(
     let placed = placed.transpose()?;
     let report = Report {
         manifest: out.join(crate::manifest::MANIFEST),
+        mm_per_px: capture.mm_per_px,
         lamps: lamps_found(&lamps, sides.first().map(|side| &side.rig)),
         ball: lamps.circle,
         spread: lamps.spread,
@@ -338,7 +350,7 @@ fn prepare_side(
     } = large;
     let slopes = Slopes::of_normals(&vectors, width);
     drop(vectors);
-    let mut shape = heights(slopes, um_per_px * step as f64);
+    let mut shape = heights(slopes, um_per_px * step as f64, capture.relief.integrate);
     if let Some(known) = capture.relief.known_range_um {
         let [low, high] = extent(&shape);
         if high > low {
@@ -360,7 +372,10 @@ fn prepare_side(
     let encoded = write::normal_codes(&small);
     // Before heights take their memory.
     drop(small);
-    let (written, grain) = rayon::join(|| maps.normal(&encoded), || heights(slopes, um_per_px));
+    let (written, grain) = rayon::join(
+        || maps.normal(&encoded),
+        || heights(slopes, um_per_px, Integration::Free),
+    );
     written?;
     let grain_um = extent(&grain);
     tell("writing maps", 0.9);
@@ -369,9 +384,11 @@ fn prepare_side(
         side,
         size,
         residual: solved.residual,
+        residuals: solved.residuals,
         doubted: solved.doubted,
         relit: solved.relit,
         doubts,
+        relit_each: solved.relit_each,
         assumed_exposure,
         shape_um,
         grain_um,
@@ -381,11 +398,20 @@ fn prepare_side(
     Ok((text, report))
 }
 
-/// Heights in µm of slopes, their mean plane taken out.
-fn heights(slopes: Slopes, um_per_px: f64) -> Vec<f64> {
+/// Heights in µm of slopes. Their mean plane is taken out, unless the perimeter lies at 0.
+fn heights(slopes: Slopes, um_per_px: f64, how: Integration) -> Vec<f64> {
+    /// The error of a slope that is still usual, half a degree: what stereo is off by where its
+    /// photographs agree.
+    const USUAL: f64 = 0.01;
     let width = slopes.width;
-    let mut heights = integrate_free(slopes);
-    remove_plane(&mut heights, width);
+    let mut heights = match how {
+        Integration::Free => integrate_free(slopes),
+        Integration::Anchored => integrate(&slopes, Perimeter::Anchored),
+        Integration::Robust => integrate_robust(&slopes, USUAL),
+    };
+    if how != Integration::Anchored {
+        remove_plane(&mut heights, width);
+    }
     heights.par_iter_mut().for_each(|h| *h *= um_per_px);
     heights
 }

@@ -13,9 +13,10 @@ use super::{
     matter::{Gathering, surfaces},
     moved::{self, Stillness},
     photographs::Stack,
+    residuals::Residuals,
     stereo::{
         Rig, Rows, Solver,
-        left_out::{LeftOut, Relit},
+        left_out::{LeftOut, Relit, RelitOne},
     },
 };
 use crate::manifest::SideName;
@@ -40,9 +41,13 @@ pub(super) struct Solved {
     pub residual: [f64; 2],
     /// The share of places at which a photograph was doubted.
     pub doubted: f64,
+    /// All of them.
+    pub residuals: Residuals,
     pub relit: Option<Relit>,
     /// What is to be said of how the photographs are exposed.
     pub doubts: Vec<String>,
+    /// Of each photograph that was left out.
+    pub relit_each: Vec<RelitOne>,
     pub stillness: Stillness,
 }
 
@@ -74,7 +79,7 @@ pub(super) fn solve_side(
     let measured = matches!(capture.lamps.light, Light::FlatField { .. }) || correction.is_some();
     let mut normals: Vec<[f32; 3]> = Vec::with_capacity(count);
     let mut albedo = Albedo::new(count, measured);
-    let mut residuals = Histogram::default();
+    let mut residuals = Residuals::default();
     let mut left_out = LeftOut::new(&solver, size[1]);
     let mut doubted = 0;
     let mut gathering = Gathering::new(capture, *side, shots, surfaces);
@@ -137,42 +142,10 @@ pub(super) fn solve_side(
             Robustness::None => 0.0,
             _ => doubted as f64 / count.max(1) as f64,
         },
+        residuals,
         relit: left_out.relit(),
         doubts,
+        relit_each: left_out.each(),
         stillness,
     })
-}
-
-/// Residuals counted in steps of a thousandth.
-struct Histogram {
-    counts: Vec<u64>,
-}
-
-impl Default for Histogram {
-    fn default() -> Self {
-        Self {
-            counts: vec![0; 1001],
-        }
-    }
-}
-
-impl Histogram {
-    fn add(&mut self, residual: f32) {
-        // Casts saturate, and NaN counts as none.
-        let step = ((residual * 1000.0) as usize).min(1000);
-        self.counts[step] += 1;
-    }
-
-    fn quantile(&self, share: f64) -> f64 {
-        let all: u64 = self.counts.iter().sum();
-        let wanted = share * all as f64;
-        let mut sum = 0;
-        for (step, count) in self.counts.iter().enumerate() {
-            sum += count;
-            if sum as f64 >= wanted {
-                return step as f64 / 1000.0;
-            }
-        }
-        1.0
-    }
 }

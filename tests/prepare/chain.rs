@@ -289,6 +289,18 @@ fn photographs_become_an_exhibit_that_is_the_sheet() {
     let page = fs::read_to_string(out.join("report.html")).expect("a page");
     assert!(page.contains("A &lt;sheet&gt; &amp; its") && page.contains("data:image/png;base64,"));
     assert!(!page.contains("src=\"maps") && !page.contains("http"));
+    let drawn = super::page::check(&page);
+    assert_eq!(drawn.iter().filter(|e| e.name == "svg").count(), 4);
+    assert_eq!(report.doubts(), Vec::<String>::new());
+    let verdict = page.find("<h2>In short").expect("a verdict");
+    assert!(verdict < page.find("<table").expect("tables"));
+    for told in [
+        "Lamps: good.",
+        "Colour: good.",
+        "Materials: not all of it is measured.",
+    ] {
+        assert!(page.contains(told), "{told}");
+    }
     // Nothing else is left.
     let mut names: Vec<String> = fs::read_dir(&out)
         .expect("a folder")

@@ -248,6 +248,7 @@ fn glossy_ink_bends_neither_albedo_nor_normals() {
 fn the_report_says_how_well() {
     let (_, out, _) = prepared();
     let page = std::fs::read_to_string(out.join("report.html")).expect("a page");
+    super::page::check(&page);
     for word in [
         "linear discriminant",
         "Levenberg-Marquardt",

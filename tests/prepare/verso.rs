@@ -83,6 +83,7 @@ fn a_verso_without_show_through_keeps_its_edges() {
     );
     // The page says so, and how the shape differs from the other surface, which is flat.
     let page = fs::read_to_string(out.join("report.html")).expect("text");
+    super::page::check(&page);
     assert!(page.contains("the edges of its photographs"));
     assert!(page.contains("In comparison with") && page.contains("larger than the sheet"));
     let compared = report.sides[0].compared.as_ref().expect("a comparison");

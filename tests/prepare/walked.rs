@@ -301,6 +301,8 @@ struct Errors {
     lamp: f64,
     /// Of photographs left out of the fit.
     relit: Relit,
+    /// What the report says to look at again.
+    doubts: Vec<String>,
 }
 
 fn chain(sheet: &Sheet, sitting: &Sitting, photographer: Photographer) -> Errors {
@@ -324,6 +326,7 @@ fn chain(sheet: &Sheet, sitting: &Sitting, photographer: Photographer) -> Errors
         albedo: each.sum::<f64>() / COUNT as f64,
         lamp: lamp_error(sitting, &report),
         relit: report.sides[0].relit.expect("photographs to leave out"),
+        doubts: report.doubts(),
     }
 }
 
@@ -348,9 +351,12 @@ fn a_sheet_is_found_in_its_photographs() {
             albedo,
             lamp,
             relit,
+            doubts,
         } = chain(&MATTE, &sitting, photographer);
         eprintln!("walked, {count} lamps: {relit:?}");
         assert!(relit.computed < relit.neighbours, "{count}: {relit:?}");
+        let of_lamps = |doubt: &&String| doubt.starts_with("lamps: ");
+        assert_eq!(doubts.iter().find(of_lamps), None, "{count}");
         eprintln!(
             "walked, {count} lamps: heights {:.3} % of their range, albedo ΔE00 {albedo:.3}, lamps {lamp:.3}°",
             100.0 * height
@@ -371,7 +377,12 @@ fn photographs_under_lamps_exchanged_are_not_computed_from_each_other() {
         ball: false,
         ..Photographer::default()
     };
-    let wrong = chain(&MATTE, &sitting, photographer).relit;
+    let wrong = chain(&MATTE, &sitting, photographer);
+    // And it is said.
+    let told =
+        |doubt: &String| doubt.starts_with("lamps: ") && doubt.contains("order of the lamps");
+    assert!(wrong.doubts.iter().any(told), "{:?}", wrong.doubts);
+    let wrong = wrong.relit;
     eprintln!("walked, relit: {right:?}, exchanged {wrong:?}");
     assert!(wrong.computed > 2.0 * right.computed, "{right:?} {wrong:?}");
 }

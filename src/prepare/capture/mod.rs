@@ -83,6 +83,19 @@ pub enum Filter {
     Bilateral,
 }
 
+/// How slopes become the sheet's shape at large.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Integration {
+    /// Least squares; nothing is asked of the perimeter.
+    #[default]
+    Free,
+    /// Least squares, the perimeter at height 0.
+    Anchored,
+    /// Slopes that contradict the others lose their weight; nothing is asked of the perimeter.
+    Robust,
+}
+
 /// A capture file, validated: every file is there and of the size it must have, and there is one
 /// photograph for each lamp.
 #[derive(Clone, Debug, PartialEq)]
@@ -230,6 +243,8 @@ pub struct Relief {
     pub split_mm: f64,
     pub filter: Filter,
     pub against_outliers: Robustness,
+    /// Of the shape at large; grain and strokes are always free.
+    pub integrate: Integration,
     pub known_range_um: Option<f64>,
 }
 
@@ -239,6 +254,7 @@ impl Default for Relief {
             split_mm: 2.0,
             filter: Filter::default(),
             against_outliers: Robustness::default(),
+            integrate: Integration::default(),
             known_range_um: None,
         }
     }

@@ -4,7 +4,7 @@
 //! a photographer's editor shows; so they speak to photographers.
 
 use super::{
-    ChartValues, Filter, Intensities, MAX_LAMPS, Robustness,
+    ChartValues, Filter, Integration, Intensities, MAX_LAMPS, Robustness,
     values::{
         CapturePath, CardReflectance, Each, Intensity, KnownUm, LampElevationDeg, PixelMm, RulerMm,
         SheetDpi, SplitMm,
@@ -239,6 +239,11 @@ record! {
             /// place, drop leaves the brightest and darkest out, none trusts all. Without it:
             /// robust.
             against_outliers: Robustness,
+            /// How slopes become the shape of the sheet: free asks nothing of its edges, anchored
+            /// holds them at height 0, for a sheet whose edges are pressed flat, and robust does
+            /// not trust slopes that contradict their surroundings, as at creases and torn edges.
+            /// Without it: free.
+            integrate: Integration,
             /// From the lowest to the highest place of the sheet in µm, where it was measured.
             /// Without it: as the lamps say.
             known_range_um: KnownUm,

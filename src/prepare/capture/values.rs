@@ -8,7 +8,7 @@ use crate::manifest::{
     macros::{choice, number, pattern},
 };
 
-use super::{ChartValues, Filter, Intensities, MAX_LAMPS, Robustness};
+use super::{ChartValues, Filter, Integration, Intensities, MAX_LAMPS, Robustness};
 
 number! {
     /// A length of a pixel's side on the sheet.
@@ -34,6 +34,7 @@ choice! {
     Intensities { Equal = "equal", Solve = "solve", }
     Robustness { None = "none", Drop = "drop", Robust = "robust", }
     Filter { Gaussian = "gaussian", Bilateral = "bilateral", }
+    Integration { Free = "free", Anchored = "anchored", Robust = "robust", }
 }
 
 pattern! {

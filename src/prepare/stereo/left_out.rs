@@ -25,17 +25,42 @@ pub struct Relit {
     pub photographs: usize,
 }
 
+/// As [`Relit`], of one photograph, in shares of its own mean value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelitOne {
+    /// Whose lamp it is, counted from 0.
+    pub lamp: usize,
+    pub computed: f64,
+    pub neighbours: f64,
+}
+
+/// What is summed over the pixels and colours of a photograph.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    computed: f64,
+    neighbours: f64,
+    sum: f64,
+    count: f64,
+}
+
+impl Sums {
+    /// How far it is off as computed, and as its neighbours' mean; `None` where all was dark.
+    fn off(&self) -> Option<[f64; 2]> {
+        let mean = self.sum / self.count;
+        let share = |squares: f64| (squares / self.count).sqrt() / mean;
+        (mean > 0.0).then(|| [share(self.computed), share(self.neighbours)])
+    }
+}
+
 /// Leaves photographs out while bands of rows run through.
 pub struct LeftOut {
     rig: Rig,
     /// Without each lamp that is left out.
     others: Vec<(usize, Solver)>,
+    /// Of each of these.
+    sums: Vec<Sums>,
     /// Of every how many rows one is looked at.
     step: usize,
-    computed: f64,
-    neighbours: f64,
-    sum: f64,
-    count: f64,
 }
 
 impl LeftOut {
@@ -55,14 +80,12 @@ impl LeftOut {
             };
             spread(&towards).is_ok().then_some((i, solver))
         });
+        let others: Vec<_> = others.collect();
         Self {
             rig: solver.rig.clone(),
-            others: others.collect(),
+            sums: vec![Sums::default(); others.len()],
+            others,
             step: height.div_ceil(ROWS).max(1),
-            computed: 0.0,
-            neighbours: 0.0,
-            sum: 0.0,
-            count: 0.0,
         }
     }
 
@@ -124,20 +147,41 @@ impl LeftOut {
                 sum += truth;
             }
         }
-        self.computed += computed;
-        self.neighbours += neighbours;
-        self.sum += sum;
-        self.count += 3.0 * truth[0].len() as f64;
+        let sums = &mut self.sums[which];
+        sums.computed += computed;
+        sums.neighbours += neighbours;
+        sums.sum += sum;
+        sums.count += 3.0 * truth[0].len() as f64;
     }
 
     /// What came of it; `None` where nothing could be left out, or all was dark.
     pub fn relit(&self) -> Option<Relit> {
-        let mean = self.sum / self.count;
-        let share = |squares: f64| (squares / self.count).sqrt() / mean;
-        (mean > 0.0).then(|| Relit {
-            computed: share(self.computed),
-            neighbours: share(self.neighbours),
+        let mut all = Sums::default();
+        for sums in &self.sums {
+            all.computed += sums.computed;
+            all.neighbours += sums.neighbours;
+            all.sum += sums.sum;
+            all.count += sums.count;
+        }
+        let [computed, neighbours] = all.off()?;
+        Some(Relit {
+            computed,
+            neighbours,
             photographs: self.others.len(),
         })
+    }
+
+    /// The same of each photograph that was left out; those that were all dark are missing.
+    pub fn each(&self) -> Vec<RelitOne> {
+        let each = self.others.iter().zip(&self.sums);
+        each.filter_map(|((lamp, _), sums)| {
+            let [computed, neighbours] = sums.off()?;
+            Some(RelitOne {
+                lamp: *lamp,
+                computed,
+                neighbours,
+            })
+        })
+        .collect()
     }
 }

@@ -516,6 +516,7 @@ fn relief(raw: Option<&RawRelief>) -> Relief {
         split_mm: raw.split_mm.map_or(usual.split_mm, |mm| mm.0),
         filter: raw.filter.unwrap_or_default(),
         against_outliers: raw.against_outliers.unwrap_or_default(),
+        integrate: raw.integrate.unwrap_or_default(),
         known_range_um: raw.known_range_um.map(|um| um.0),
     }
 }
