@@ -206,7 +206,7 @@ fn of_side(capture: &Capture, side: &SideReport, stillness: &Stillness) -> Strin
     );
     out += &match side.residuals.quantile(1.0) > 0.0 {
         true => plots::residuals(name, &side.residuals, side.residual),
-        false => "<p>The photographs leave nothing over, as three always do: no plot of it.</p>"
+        false => "<p>The photographs leave less than a thousandth over, as three always do: no plot of it.</p>"
             .to_owned(),
     };
     out += &plots::left_out(name, &side.relit_each);

@@ -39,10 +39,10 @@ pub(super) struct Solved {
     pub fields: Vec<FlatField>,
     /// Median and 95th percentile of what the photographs leave over, in shares of their mean.
     pub residual: [f64; 2],
+    /// What they leave over at each place.
+    pub residuals: Residuals,
     /// The share of places at which a photograph was doubted.
     pub doubted: f64,
-    /// All of them.
-    pub residuals: Residuals,
     pub relit: Option<Relit>,
     /// What is to be said of how the photographs are exposed.
     pub doubts: Vec<String>,
