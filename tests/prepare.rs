@@ -16,6 +16,8 @@ mod colour;
 mod gloss;
 #[path = "prepare/interrupted.rs"]
 mod interrupted;
+#[path = "prepare/light.rs"]
+mod light;
 #[path = "prepare/lights.rs"]
 mod lights;
 #[path = "prepare/made.rs"]

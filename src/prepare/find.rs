@@ -13,7 +13,7 @@ use super::{
     PrepareError,
     capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots},
     colour::{
-        chart::{ChartError, MOST_OFF, colours, colours_unclipped},
+        chart::{ChartError, MOST_OFF, colours, colours_unclipped, middles},
         correct::{self, Fitted},
     },
     flat_field::FlatField,
@@ -147,12 +147,14 @@ pub fn flat_fields(
     let Light::FlatField {
         photographs,
         reflectance,
+        ambient,
     } = &capture.lamps.light
     else {
         return Ok(Vec::new());
     };
+    let (ambient, encoding) = (ambient.as_deref(), capture.encoding);
     let read = |path: &PathBuf| {
-        FlatField::read(path, capture.encoding, shots.crop, *reflectance, scratch)
+        FlatField::read(path, ambient, encoding, shots.crop, *reflectance, scratch)
             .map_err(PrepareError::from)
     };
     photographs.par_iter().map(read).collect()
@@ -189,7 +191,12 @@ pub fn look(
     let (mut samples, mut greys) = (None, None);
     rig.gain = match &capture.lamps.light {
         Light::FlatField { .. } => Gain::FlatFielded,
-        Light::Relative(values) => Gain::Relative(values.clone()),
+        Light::Relative(values) => {
+            // Only their ratios are known.
+            let mut values = values.clone();
+            intensity::normalise(&mut values);
+            Gain::Relative(values)
+        }
         Light::Unknown(Intensities::Equal) => Gain::Relative(equal),
         Light::Unknown(Intensities::Solve) => {
             rig.gain = Gain::Relative(equal);
@@ -268,20 +275,22 @@ fn samples(
     Ok((samples, reduced.map(|_| stack.greys())))
 }
 
-/// The correction of colours, where there is a chart.
+/// The correction of colours, where there is a chart: from stereo's units under the recto's `rig`,
+/// under the first lamp of which the chart lies flat.
 ///
 /// # Errors
 /// Where its patches cannot be read.
-pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, PrepareError> {
+pub fn correction(
+    capture: &Capture,
+    rig: &Rig,
+    scratch: &Path,
+) -> Result<Option<Fitted>, PrepareError> {
     let Some(chart) = &capture.chart else {
         return Ok(None);
     };
     let corners = self::chart::corners(chart, capture.encoding, scratch)?;
     let Chart {
-        photograph,
-        lab,
-        flat_field,
-        ..
+        photograph, lab, ..
     } = chart;
     let refused = |why| PrepareError::Chart {
         path: photograph.clone(),
@@ -291,20 +300,13 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
     let mut planes = planes(photograph, capture, whole(size), scratch)?;
     let [width, height] = size.map(|v| v as usize);
     // Clipping shows before the light is evened out.
-    let read = |planes: &[Vec<f32>; 3]| {
-        colours(
-            planes.each_ref().map(Vec::as_slice),
-            [width, height],
-            corners,
-        )
-    };
-    let mut measured = read(&planes).map_err(refused)?;
-    if let Some(card) = flat_field {
-        let reflectance = match &capture.lamps.light {
-            Light::FlatField { reflectance, .. } => *reflectance,
-            _ => 1.0,
-        };
-        let field = FlatField::read(card, capture.encoding, whole(size), reflectance, scratch)?;
+    let mut measured = colours(
+        planes.each_ref().map(Vec::as_slice),
+        [width, height],
+        corners,
+    )
+    .map_err(refused)?;
+    if let Some(field) = self::chart::field(chart, capture, size, scratch)? {
         let [r, g, b] = &mut planes;
         for y in 0..height {
             let row = y * width..(y + 1) * width;
@@ -317,6 +319,12 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
             corners,
         )
         .map_err(refused)?;
+    }
+    let places = middles(corners).map_err(refused)?;
+    let shown = self::chart::diffuser(chart, capture, rig, size);
+    for (rgb, at) in measured.iter_mut().zip(places) {
+        let shown = shown(at);
+        rgb.iter_mut().for_each(|v| *v /= shown);
     }
     let fitted = correct::fit(&measured, lab, capture.illuminant.xy());
     match fitted {

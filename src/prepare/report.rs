@@ -8,6 +8,7 @@ use super::{
     colour::chart::COLORCHECKER24,
     matter,
     run::Report,
+    write,
 };
 use crate::{
     manifest::SideName,
@@ -98,8 +99,9 @@ fn page(capture: &Capture, report: &Report, folder: &Path) -> Result<String, Pre
     }
     let _ = write!(
         out,
-        "</table><p>They span space with {:.2} (1 is best; noise grows by its inverse).</p>",
-        report.spread
+        "</table><p>They span space with {:.2} (1 is best; noise grows by its inverse).</p>{}",
+        report.spread,
+        write::lamps_told(&report.lamps),
     );
     if let Some(fitted) = &report.colour {
         out += "<h2>Colour</h2><table><tr><th>Patch<th>ΔE00 before<th>after";

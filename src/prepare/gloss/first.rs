@@ -14,6 +14,7 @@ use crate::{
     optics::medium::{Matter, Medium, MediumId},
     prepare::{
         capture::Robustness,
+        lights::far_apart,
         model::Model,
         stereo::{Inked, Paper, Response, Rig, Rows, Solved, Solver, Standing},
     },
@@ -61,21 +62,7 @@ pub struct Dark {
 
 /// Lamps that are enough for a fit, far from each other.
 pub fn some_lamps(rig: &Rig) -> Vec<usize> {
-    let towards = rig.standing.directions();
-    let mut chosen = vec![0];
-    while chosen.len() < LAMPS.min(towards.len()) {
-        let nearest = |i: &usize| {
-            let each = chosen.iter().map(|k| towards[*k].dot(towards[*i]));
-            each.fold(f64::NEG_INFINITY, f64::max)
-        };
-        let others = (0..towards.len()).filter(|i| !chosen.contains(i));
-        match others.min_by(|a, b| nearest(a).total_cmp(&nearest(b))) {
-            Some(next) => chosen.push(next),
-            None => break,
-        }
-    }
-    chosen.sort_unstable();
-    chosen
+    far_apart(&rig.standing.directions(), LAMPS)
 }
 
 impl Surfaces {

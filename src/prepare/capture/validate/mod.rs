@@ -62,6 +62,7 @@ impl Validator<'_, '_> {
                 self.one_each(verso, count, &root.key("verso"));
             }
         }
+        self.room_light(raw, &root);
         let lamps =
             placed.and_then(|placed| self.lamps(placed, &raw.lamps, recto.as_ref(), &lamps_trail));
         let size = recto.as_ref().map(|shots| shots.size);
