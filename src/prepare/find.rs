@@ -14,7 +14,7 @@ use super::{
     capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots},
     colour::{
         chart::{ChartError, MOST_OFF, colours, colours_unclipped, middles},
-        correct::{self, Fitted},
+        correct::{self, Correction, Fitted},
     },
     flat_field::FlatField,
     lights::{self, intensity, sphere},
@@ -135,13 +135,15 @@ pub fn whole([right, bottom]: [u32; 2]) -> Crop {
     }
 }
 
-/// What each lamp gives to each place of a side; empty where no grey card was photographed.
+/// What each lamp gives to each place of a side; without grey cards what a chart says of white,
+/// and empty without a chart.
 ///
 /// # Errors
 /// Of the first card that cannot be used.
 pub fn flat_fields(
     capture: &Capture,
     shots: &Shots,
+    correction: Option<&Correction>,
     scratch: &Path,
 ) -> Result<Vec<FlatField>, PrepareError> {
     let Light::FlatField {
@@ -150,7 +152,11 @@ pub fn flat_fields(
         ambient,
     } = &capture.lamps.light
     else {
-        return Ok(Vec::new());
+        let of_white = |of: &Correction| {
+            let field = FlatField::of_white(of.white);
+            vec![field; shots.photographs.len()]
+        };
+        return Ok(correction.map(of_white).unwrap_or_default());
     };
     let (ambient, encoding) = (ambient.as_deref(), capture.encoding);
     let read = |path: &PathBuf| {
@@ -333,6 +339,11 @@ pub fn correction(
         Some(fitted) if !(fitted.off() <= MOST_OFF) => {
             Err(refused(ChartError::Unlike(fitted.off())))
         }
-        Some(fitted) => Ok(Some(fitted)),
+        Some(mut fitted) => {
+            if matches!(rig.gain, Gain::Relative(_)) {
+                fitted.correction = fitted.correction.balanced();
+            }
+            Ok(Some(fitted))
+        }
     }
 }

@@ -158,12 +158,21 @@ impl FlatField {
         Ok(Self { cells, step, gain })
     }
 
+    /// Of which a photograph shows the same everywhere, this much of a perfect diffuser.
+    pub fn of_white(white: [f64; 3]) -> Self {
+        Self {
+            cells: [1, 1],
+            step: [1.0, 1.0],
+            gain: vec![white.map(|value| value.recip() as f32)],
+        }
+    }
+
     /// Its middle alone, everywhere.
     #[must_use]
     pub fn even(&self) -> Self {
         Self {
             cells: [1, 1],
-            step: [0, 1].map(|axis| self.step[axis] * self.cells[axis] as f64),
+            step: [1.0, 1.0],
             gain: vec![self.middle()],
         }
     }
