@@ -18,6 +18,8 @@ mod creased;
 mod gloss;
 #[path = "prepare/interrupted.rs"]
 mod interrupted;
+#[path = "prepare/light.rs"]
+mod light;
 #[path = "prepare/lights.rs"]
 mod lights;
 #[path = "prepare/made.rs"]

@@ -13,8 +13,8 @@ use super::{
     PrepareError,
     capture::{Capture, Chart, Circle, Crop, Intensities, Light, Places, Shots},
     colour::{
-        chart::{ChartError, MOST_OFF, colours, colours_unclipped},
-        correct::{self, Fitted},
+        chart::{ChartError, MOST_OFF, colours, colours_unclipped, middles},
+        correct::{self, Correction, Fitted},
     },
     flat_field::FlatField,
     lights::{self, intensity, sphere},
@@ -135,24 +135,32 @@ pub fn whole([right, bottom]: [u32; 2]) -> Crop {
     }
 }
 
-/// What each lamp gives to each place of a side; empty where no grey card was photographed.
+/// What each lamp gives to each place of a side; without grey cards what a chart says of white,
+/// and empty without a chart.
 ///
 /// # Errors
 /// Of the first card that cannot be used.
 pub fn flat_fields(
     capture: &Capture,
     shots: &Shots,
+    correction: Option<&Correction>,
     scratch: &Path,
 ) -> Result<Vec<FlatField>, PrepareError> {
     let Light::FlatField {
         photographs,
         reflectance,
+        ambient,
     } = &capture.lamps.light
     else {
-        return Ok(Vec::new());
+        let of_white = |of: &Correction| {
+            let field = FlatField::of_white(of.white);
+            vec![field; shots.photographs.len()]
+        };
+        return Ok(correction.map(of_white).unwrap_or_default());
     };
+    let (ambient, encoding) = (ambient.as_deref(), capture.encoding);
     let read = |path: &PathBuf| {
-        FlatField::read(path, capture.encoding, shots.crop, *reflectance, scratch)
+        FlatField::read(path, ambient, encoding, shots.crop, *reflectance, scratch)
             .map_err(PrepareError::from)
     };
     photographs.par_iter().map(read).collect()
@@ -189,7 +197,12 @@ pub fn look(
     let (mut samples, mut greys) = (None, None);
     rig.gain = match &capture.lamps.light {
         Light::FlatField { .. } => Gain::FlatFielded,
-        Light::Relative(values) => Gain::Relative(values.clone()),
+        Light::Relative(values) => {
+            // Only their ratios are known.
+            let mut values = values.clone();
+            intensity::normalise(&mut values);
+            Gain::Relative(values)
+        }
         Light::Unknown(Intensities::Equal) => Gain::Relative(equal),
         Light::Unknown(Intensities::Solve) => {
             rig.gain = Gain::Relative(equal);
@@ -268,20 +281,22 @@ fn samples(
     Ok((samples, reduced.map(|_| stack.greys())))
 }
 
-/// The correction of colours, where there is a chart.
+/// The correction of colours, where there is a chart: from stereo's units under the recto's `rig`,
+/// under the first lamp of which the chart lies flat.
 ///
 /// # Errors
 /// Where its patches cannot be read.
-pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, PrepareError> {
+pub fn correction(
+    capture: &Capture,
+    rig: &Rig,
+    scratch: &Path,
+) -> Result<Option<Fitted>, PrepareError> {
     let Some(chart) = &capture.chart else {
         return Ok(None);
     };
     let corners = self::chart::corners(chart, capture.encoding, scratch)?;
     let Chart {
-        photograph,
-        lab,
-        flat_field,
-        ..
+        photograph, lab, ..
     } = chart;
     let refused = |why| PrepareError::Chart {
         path: photograph.clone(),
@@ -291,20 +306,13 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
     let mut planes = planes(photograph, capture, whole(size), scratch)?;
     let [width, height] = size.map(|v| v as usize);
     // Clipping shows before the light is evened out.
-    let read = |planes: &[Vec<f32>; 3]| {
-        colours(
-            planes.each_ref().map(Vec::as_slice),
-            [width, height],
-            corners,
-        )
-    };
-    let mut measured = read(&planes).map_err(refused)?;
-    if let Some(card) = flat_field {
-        let reflectance = match &capture.lamps.light {
-            Light::FlatField { reflectance, .. } => *reflectance,
-            _ => 1.0,
-        };
-        let field = FlatField::read(card, capture.encoding, whole(size), reflectance, scratch)?;
+    let mut measured = colours(
+        planes.each_ref().map(Vec::as_slice),
+        [width, height],
+        corners,
+    )
+    .map_err(refused)?;
+    if let Some(field) = self::chart::field(chart, capture, size, scratch)? {
         let [r, g, b] = &mut planes;
         for y in 0..height {
             let row = y * width..(y + 1) * width;
@@ -318,6 +326,12 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
         )
         .map_err(refused)?;
     }
+    let places = middles(corners).map_err(refused)?;
+    let shown = self::chart::diffuser(chart, capture, rig, size);
+    for (rgb, at) in measured.iter_mut().zip(places) {
+        let shown = shown(at);
+        rgb.iter_mut().for_each(|v| *v /= shown);
+    }
     let fitted = correct::fit(&measured, lab, capture.illuminant.xy());
     match fitted {
         None => Err(refused(ChartError::Flat)),
@@ -325,6 +339,11 @@ pub fn correction(capture: &Capture, scratch: &Path) -> Result<Option<Fitted>, P
         Some(fitted) if fitted.off().is_nan() || fitted.off() > MOST_OFF => {
             Err(refused(ChartError::Unlike(fitted.off())))
         }
-        Some(fitted) => Ok(Some(fitted)),
+        Some(mut fitted) => {
+            if matches!(rig.gain, Gain::Relative(_)) {
+                fitted.correction = fitted.correction.balanced();
+            }
+            Ok(Some(fitted))
+        }
     }
 }

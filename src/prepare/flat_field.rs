@@ -5,7 +5,7 @@
 //! bilinear. A photograph divided by it shows π times the radiance of the sheet over that of a
 //! perfect diffuser which lies flat in its place.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::photographs::{Stack, StackError};
 use crate::maps::ColourEncoding;
@@ -56,18 +56,24 @@ pub struct FlatField {
 
 impl FlatField {
     /// Reads the photograph of a card that reflects `reflectance` of the light; `crop` is what of
-    /// it is needed.
+    /// it is needed. `ambient` shows the card with all lamps off, and is taken from it.
     ///
     /// # Errors
     /// [`FlatFieldError`].
     pub fn read(
         path: &Path,
+        ambient: Option<&Path>,
         encoding: ColourEncoding,
         crop: Crop,
         reflectance: f64,
         scratch: &Path,
     ) -> Result<Self, FlatFieldError> {
-        let paths = [path.to_owned()];
+        // What is clipped shows before the room's light is taken off.
+        let paths: Vec<PathBuf> = [Some(path), ambient]
+            .into_iter()
+            .flatten()
+            .map(Path::to_owned)
+            .collect();
         let mut stack = Stack::open(&paths, None, encoding, crop, scratch)?;
         let size = [crop.width(), crop.height()];
         let longer = size[0].max(size[1]);
@@ -95,9 +101,16 @@ impl FlatField {
                 for (cell, edge) in edges.windows(2).enumerate() {
                     let sum = &mut sums[cell_y * cells[0] + cell];
                     let [r, g, b] = planes.map(|plane| &plane[edge[0]..edge[1]]);
+                    // As photographs have 16 bits, sums of a cell's row are exact enough.
+                    let total = |plane: &[f32]| f64::from(plane.iter().sum::<f32>());
                     for (sum, plane) in sum.iter_mut().zip([r, g, b]) {
-                        // As photographs have 16 bits, sums of a cell's row are exact enough.
-                        *sum += f64::from(plane.iter().sum::<f32>());
+                        *sum += total(plane);
+                    }
+                    if ambient.is_some() {
+                        let dark = band.row(1, row).map(|plane| &plane[edge[0]..edge[1]]);
+                        for (sum, plane) in sum.iter_mut().zip(dark) {
+                            *sum -= total(plane);
+                        }
                     }
                     sum[3] += r.len() as f64;
                     let over = r.iter().zip(g).zip(b).filter(|((r, g), b)| {
@@ -143,6 +156,49 @@ impl FlatField {
             .map(|mean| mean.map(|value| (reflectance / value) as f32))
             .collect();
         Ok(Self { cells, step, gain })
+    }
+
+    /// Of which a photograph shows the same everywhere, this much of a perfect diffuser.
+    pub fn of_white(white: [f64; 3]) -> Self {
+        Self {
+            cells: [1, 1],
+            step: [1.0, 1.0],
+            gain: vec![white.map(|value| value.recip() as f32)],
+        }
+    }
+
+    /// Its middle alone, everywhere.
+    #[must_use]
+    pub fn even(&self) -> Self {
+        Self {
+            cells: [1, 1],
+            step: [1.0, 1.0],
+            gain: vec![self.middle()],
+        }
+    }
+
+    /// How it falls off from its middle, which it leaves as it is.
+    #[must_use]
+    pub fn fall_off(mut self) -> Self {
+        let middle = self.middle();
+        for gain in &mut self.gain {
+            for (gain, middle) in gain.iter_mut().zip(middle) {
+                *gain /= middle;
+            }
+        }
+        self
+    }
+
+    fn middle(&self) -> [f32; 3] {
+        let half = |axis: usize| self.cells[axis] as f64 * self.step[axis] / 2.0;
+        let (left, right, share_x) = self.between(0, half(0));
+        let (top, bottom, share_y) = self.between(1, half(1));
+        let mix = |a: f32, b: f32, share: f32| a + (b - a) * share;
+        [0, 1, 2].map(|c| {
+            let at = |x: usize, y: usize| self.gain[y * self.cells[0] + x][c];
+            let across = |y: usize| mix(at(left, y), at(right, y), share_x);
+            mix(across(top), across(bottom), share_y)
+        })
     }
 
     /// Multiplies row `y` of a photograph (planes of red, green, blue) by its gain.

@@ -18,6 +18,7 @@ use super::{
     matter,
     moved::Stillness,
     run::{Report, SideReport},
+    write,
 };
 use crate::{
     manifest::SideName,
@@ -140,8 +141,9 @@ fn of_lamps(report: &Report) -> String {
     let _ = write!(
         out,
         "</table><p>How well they stand all around the sheet: {:.2} (1 is best; noise in the maps grows \
-         by its inverse).</p>",
-        report.spread
+         by its inverse).</p>{}",
+        report.spread,
+        write::lamps_told(&report.lamps),
     );
     out + &plots::lamps(&report.lamps)
 }

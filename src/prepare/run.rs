@@ -206,9 +206,6 @@ fn staged(
     let mut tell = |step, done| progress(Progress { step, done });
     tell("looking for the lamps", 0.0);
     let lamps = find::lamps(capture, scratch)?;
-    tell("reading the chart", 0.03);
-    let colour = find::correction(capture, scratch)?;
-    let correction = colour.as_ref().map(|fitted| &fitted.correction);
     let both = [
         (SideName::Recto, Some(&capture.recto)),
         (SideName::Verso, capture.verso.as_ref()),
@@ -232,6 +229,12 @@ fn staged(
         let rig = looked.rig(shots)?;
         sides.push(Side { side, shots, rig });
     }
+    tell("reading the chart", 0.09);
+    let colour = match sides.first() {
+        Some(recto) => find::correction(capture, &recto.rig, scratch)?,
+        None => None,
+    };
+    let correction = colour.as_ref().map(|fitted| &fitted.correction);
     let mut reports = Vec::new();
     let mut texts = Vec::new();
     let mut stillness = Vec::new();

@@ -66,7 +66,7 @@ pub(super) fn solve_side(
 ) -> Result<Solved, PrepareError> {
     let Side { side, shots, rig } = side;
     tell("reading grey cards", 0.0);
-    let fields = find::flat_fields(capture, shots, scratch)?;
+    let fields = find::flat_fields(capture, shots, correction, scratch)?;
     tell("looking at the surfaces", 0.02);
     let surfaces = surfaces(capture, *side, (*shots, rig), correction, &fields, scratch)?;
     let solver = Solver {

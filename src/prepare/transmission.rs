@@ -224,7 +224,7 @@ fn read(
         .as_ref()
         .and_then(|t| t.flat_field.as_ref());
     let field = flat
-        .map(|card| FlatField::read(card, capture.encoding, crop, 1.0, scratch))
+        .map(|card| FlatField::read(card, None, capture.encoding, crop, 1.0, scratch))
         .transpose()?;
     let paths = [path.to_owned()];
     let mut stack = Stack::open(&paths, None, capture.encoding, crop, scratch)?;

@@ -6,23 +6,24 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::{
     PrepareError,
     capture::Capture,
     depth::Depths,
+    lights,
     materials::legend::{self, MediaFile},
     matter,
     relief::surface,
     report,
-    run::Report,
+    run::{LampFound, Report, SideReport},
     verso::Place,
 };
 use crate::{
     colour::srgb_encode,
-    manifest::{MANIFEST, SideName, check_shape},
+    manifest::{MANIFEST, MAX_LAMPS, SideName, check_shape},
     maps::encode::{save_png_grey16, save_png_rgb16, write_whole},
 };
 
@@ -32,7 +33,8 @@ pub(super) const MAPS: &str = "maps";
 /// Lines of a manifest about one side.
 pub(super) struct SideText {
     side: SideName,
-    text: String,
+    /// Of grain and strokes, in µm of black and of white.
+    grain_um: [f64; 2],
     /// Of the sheet's shape.
     surface: String,
     size: [usize; 2],
@@ -182,20 +184,31 @@ impl<'s> SideFiles<'s> {
     pub fn grain(self, um: &[f64], surface: String) -> Result<SideText, PrepareError> {
         let levels = Levels::new(um);
         self.grey16(&self.within.join("height.png"), &levels.values)?;
-        let name = word(self.side);
-        let text = format!(
-            "albedo = {{ file = \"{MAPS}/{name}/albedo.png\", encoding = \"srgb\" }}\n\
-             normal = {{ file = \"{MAPS}/{name}/normal.png\", y = \"up\" }}\n\
-             height = {{ file = \"{MAPS}/{name}/height.png\", range_um = [{}, {}] }}\n\
-             source = \"measured\"\n",
-            levels.range[0], levels.range[1]
-        );
         Ok(SideText {
             side: self.side,
-            text,
+            grain_um: levels.range,
             surface,
             size: self.size,
         })
+    }
+}
+
+impl SideText {
+    /// The lines about its maps.
+    fn maps(&self, found: &SideReport) -> String {
+        let name = word(self.side);
+        // What the brightest paper is was not measured.
+        let level = match found.assumed_exposure {
+            Some(_) => ", source = \"assumed\"",
+            None => "",
+        };
+        let [low, high] = self.grain_um;
+        format!(
+            "albedo = {{ file = \"{MAPS}/{name}/albedo.png\", encoding = \"srgb\"{level} }}\n\
+             normal = {{ file = \"{MAPS}/{name}/normal.png\", y = \"up\" }}\n\
+             height = {{ file = \"{MAPS}/{name}/height.png\", range_um = [{low}, {high}] }}\n\
+             source = \"measured\"\n",
+        )
     }
 }
 
@@ -300,7 +313,7 @@ pub(super) fn manifest(
             text += &side.surface;
             text += "\n";
         }
-        text += &format!("[drawing.{}]\n{}", word(side.side), side.text);
+        text += &format!("[drawing.{}]\n{}", word(side.side), side.maps(found));
         text += &matter::side_lines(found);
         if side.side == SideName::Verso {
             text += &report.verso.as_ref().map(Place::lines).unwrap_or_default();
@@ -309,22 +322,64 @@ pub(super) fn manifest(
     }
     text += &matter::drawing_lines(report);
     text += &matter::media_lines(report);
-    // Lamps as they stood, so that the photographs can be looked at again.
-    for (i, lamp) in report.lamps.iter().enumerate().take(8) {
-        text += &format!(
-            "[[lamp]]\nid = \"photographed-{}\"\nkind = \"distant\"\nelevation_deg = {:?}\n\
-             azimuth_deg = {:?}\nlux_at_sheet = 150\n\n",
-            i + 1,
-            (lamp.elevation_deg * 10.0).round() / 10.0,
-            (lamp.azimuth_deg * 10.0).round() / 10.0,
-        );
-    }
+    text += &lamp_lines(&report.lamps);
     check_shape(&text)?;
     write_whole(&folder.join(MANIFEST), |file| {
         file.write_all(text.trim_end().as_bytes())?;
         file.write_all(b"\n")
     })?;
     Ok(())
+}
+
+/// Of `lamps`, which an exhibit shows its sheet under: as many as a scene may have, from all
+/// around.
+fn shown_lamps(lamps: &[LampFound]) -> Vec<usize> {
+    let directions: Vec<DVec3> = lamps
+        .iter()
+        .map(|lamp| lights::direction(lamp.azimuth_deg, lamp.elevation_deg))
+        .collect();
+    lights::far_apart(&directions, MAX_LAMPS)
+}
+
+/// Which lamps an exhibit shows, where it cannot show all: a paragraph of a page, or nothing.
+pub(super) fn lamps_told(lamps: &[LampFound]) -> String {
+    let shown = shown_lamps(lamps);
+    if shown.len() == lamps.len() {
+        return String::new();
+    }
+    let names: Vec<String> = shown.iter().map(|i| (i + 1).to_string()).collect();
+    format!(
+        "<p>The exhibit shows the sheet under {} of the {} lamps, those farthest from each other: \
+         {}.</p>",
+        shown.len(),
+        lamps.len(),
+        names.join(", ")
+    )
+}
+
+/// Lamps as they stood, so that the photographs can be looked at again; as bright in comparison
+/// with each other as they were, where that is known.
+fn lamp_lines(lamps: &[LampFound]) -> String {
+    /// Of all of them on the mean.
+    const LUX: f64 = 150.0;
+    /// What is darker gives no light.
+    const DARKEST_LUX: f64 = 0.01;
+    let shown = shown_lamps(lamps);
+    let sum: f64 = shown.iter().filter_map(|i| lamps[*i].intensity).sum();
+    let mean = sum / shown.len().max(1) as f64;
+    let lines = shown.into_iter().map(|i| {
+        let lamp = &lamps[i];
+        let lux = LUX * lamp.intensity.map_or(1.0, |of| of / mean);
+        format!(
+            "[[lamp]]\nid = \"photographed-{}\"\nkind = \"distant\"\nelevation_deg = {:?}\n\
+             azimuth_deg = {:?}\nlux_at_sheet = {:?}\n\n",
+            i + 1,
+            (lamp.elevation_deg * 10.0).round() / 10.0,
+            (lamp.azimuth_deg * 10.0).round() / 10.0,
+            (lux.max(DARKEST_LUX) * 100.0).round() / 100.0,
+        )
+    });
+    lines.collect()
 }
 
 #[cfg(test)]

@@ -285,7 +285,10 @@ fn a_capture_without_corners_has_its_colours_corrected() {
     let fitted = |corners: &str| {
         let (capture, _) =
             Capture::parse(&path.join("capture.toml"), &text(corners)).expect("a capture");
-        find::correction(&capture, path)
+        let lamps = find::lamps(&capture, path).expect("lamps");
+        let looked = find::look(&capture, &capture.recto, &lamps, path).expect("light");
+        let rig = looked.rig(&capture.recto).expect("intensities");
+        find::correction(&capture, &rig, path)
     };
     let found = fitted("").expect("a chart").expect("a correction");
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;

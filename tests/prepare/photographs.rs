@@ -196,6 +196,7 @@ fn a_grey_card_takes_the_fall_off_away_and_not_its_own_noise() {
     let read = || {
         FlatField::read(
             &path,
+            None,
             ColourEncoding::Linear,
             whole(&path),
             0.18,

@@ -171,6 +171,8 @@ pub enum Light {
         photographs: Vec<PathBuf>,
         /// Of the card.
         reflectance: f64,
+        /// The card with all lamps off.
+        ambient: Option<PathBuf>,
     },
     /// In proportion to these.
     Relative(Vec<f64>),

@@ -117,6 +117,9 @@ record! {
             flat_field: RawFrames,
             /// What share of the light the grey card reflects. Without it: 0.18.
             grey_card: CardReflectance,
+            /// A photograph of the grey card with all lamps off, of the same exposure: the room's
+            /// light, which is taken from the others as `recto.ambient` is from the recto's.
+            flat_field_ambient: CapturePath,
             /// How bright each lamp is in comparison with the others. Not together with
             /// flat_field, which says it.
             relative: List<Intensity, 1, MAX_LAMPS>,
@@ -131,6 +134,7 @@ record! {
             Rule::Needs("elevation_deg", "azimuth_deg"),
             Rule::Needs("distance_mm", "azimuth_deg"),
             Rule::Needs("grey_card", "flat_field"),
+            Rule::Needs("flat_field_ambient", "flat_field"),
             Rule::AtMostOne(&["flat_field", "relative", "intensities"]),
         ]
     }
@@ -173,7 +177,7 @@ record! {
     /// A colour chart of six by four patches.
     pub struct RawChart {
         required {
-            /// The photograph that it is in.
+            /// The photograph that it is in, flat under the first lamp, at the sheet's exposure.
             photograph: CapturePath,
         }
         optional {

@@ -72,6 +72,9 @@ pub struct Correction {
     pub model: Model,
     /// For red, green and blue, a factor for each term.
     pub factors: [Vec<f64>; 3],
+    /// What photographs are divided by before they are solved and corrected, where no grey card
+    /// says it: what they show of a perfect diffuser, in each channel.
+    pub white: [f64; 3],
 }
 
 impl Correction {
@@ -81,7 +84,48 @@ impl Correction {
         Self {
             model: Model::Linear,
             factors: std::array::from_fn(unit),
+            white: [1.0; 3],
         }
+    }
+
+    /// The same for colours that were divided by what becomes white: gloss is as white as its
+    /// lamp, and is told from ink by that.
+    #[must_use]
+    pub fn balanced(mut self) -> Self {
+        let white = self.shown_white();
+        let terms = self.model.terms(white);
+        for row in &mut self.factors {
+            row.iter_mut().zip(&terms).for_each(|(f, term)| *f *= term);
+        }
+        self.white = white;
+        self
+    }
+
+    /// The colour that becomes white, by Newton's method.
+    fn shown_white(&self) -> [f64; 3] {
+        const ROUNDS: usize = 20;
+        const STEP: f64 = 1e-4;
+        const NEAR: f64 = 1e-9;
+        let apply = |rgb: DVec3| DVec3::from(self.apply(rgb.to_array()));
+        let level = 3.0 / apply(DVec3::ONE).element_sum();
+        let level = if level.is_finite() && level > 0.0 {
+            level
+        } else {
+            1.0
+        };
+        let mut white = DVec3::splat(level);
+        for _ in 0..ROUNDS {
+            let now = apply(white);
+            if (now - 1.0).abs().max_element() < NEAR && white.min_element() > 0.0 {
+                return white.to_array();
+            }
+            let step = STEP * level;
+            let slope = |axis: DVec3| (apply(white + axis * step) - now) / step;
+            let jacobian = DMat3::from_cols(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
+            white += jacobian.inverse() * (1.0 - now);
+        }
+        // Of channels that say nothing of white, their level alone.
+        [level; 3]
     }
 
     /// A linear colour, corrected; it may leave the gamut.
@@ -201,5 +245,57 @@ fn fit_model(
     let [r, g, b] = <[Vec<f64>; 3]>::try_from(factors).ok()?;
     let factors = [r, g, b];
     let finite = factors.iter().flatten().all(|f| f.is_finite());
-    finite.then_some(Correction { model, factors })
+    finite.then_some(Correction {
+        model,
+        factors,
+        white: [1.0; 3],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_balanced_corrects_as_before() {
+        let linear = vec![
+            vec![1.9, -0.7, -0.1],
+            vec![-0.3, 1.6, -0.4],
+            vec![0.1, -0.6, 1.9],
+        ];
+        let rooted = linear
+            .iter()
+            .map(|row| [row.as_slice(), &[0.2, -0.1, 0.15]].concat());
+        let rooted: Vec<Vec<f64>> = rooted.collect();
+        for (model, rows) in [(Model::Linear, linear), (Model::RootPolynomial, rooted)] {
+            for exposure in [0.01, 1.0, 30.0] {
+                let rows = rows
+                    .iter()
+                    .map(|row| row.iter().map(|f| f / exposure).collect());
+                let rows: Vec<Vec<f64>> = rows.collect();
+                let plain = Correction {
+                    model,
+                    factors: rows.try_into().expect("three rows"),
+                    white: [1.0; 3],
+                };
+                let balanced = plain.clone().balanced();
+                let white = DVec3::from(balanced.apply([1.0; 3]));
+                assert!((white - 1.0).abs().max_element() < 1e-6, "{model} {white}");
+                let colour = DVec3::new(0.3, 0.2, 0.7) * exposure;
+                let by = DVec3::from(plain.apply(colour.to_array()));
+                let divided = colour / DVec3::from(balanced.white);
+                let off = DVec3::from(balanced.apply(divided.to_array())) - by;
+                assert!(off.abs().max_element() < 1e-6, "{model} {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_white_the_level_is_left() {
+        let nothing = Correction {
+            factors: [vec![0.0; 3], vec![0.0; 3], vec![0.0; 3]],
+            ..Correction::none()
+        };
+        assert_eq!(nothing.balanced().white, [1.0; 3]);
+    }
 }

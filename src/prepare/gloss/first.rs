@@ -14,6 +14,7 @@ use crate::{
     optics::medium::{Matter, Medium, MediumId},
     prepare::{
         capture::Robustness,
+        lights::far_apart,
         model::Model,
         stereo::{Inked, Paper, Response, Rig, Rows, Solved, Solver, Standing},
     },
@@ -30,6 +31,9 @@ const FEWEST: usize = 40;
 const DARKER: f64 = 0.6;
 /// Lamps that a fit takes: more hardly add to it.
 const LAMPS: usize = 8;
+
+/// How far from 1 the level of photographs is for the gloss in them to matter.
+const LEVEL: f64 = 0.05;
 
 /// A place with all its photographs, before it is solved.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,21 +65,7 @@ pub struct Dark {
 
 /// Lamps that are enough for a fit, far from each other.
 pub fn some_lamps(rig: &Rig) -> Vec<usize> {
-    let towards = rig.standing.directions();
-    let mut chosen = vec![0];
-    while chosen.len() < LAMPS.min(towards.len()) {
-        let nearest = |i: &usize| {
-            let each = chosen.iter().map(|k| towards[*k].dot(towards[*i]));
-            each.fold(f64::NEG_INFINITY, f64::max)
-        };
-        let others = (0..towards.len()).filter(|i| !chosen.contains(i));
-        match others.min_by(|a, b| nearest(a).total_cmp(&nearest(b))) {
-            Some(next) => chosen.push(next),
-            None => break,
-        }
-    }
-    chosen.sort_unstable();
-    chosen
+    far_apart(&rig.standing.directions(), LAMPS)
 }
 
 impl Surfaces {
@@ -83,13 +73,20 @@ impl Surfaces {
     /// diffuser that they should show 1 of, or what says it by the green albedo of all places;
     /// `films` is whether dark places may be ink in the paper.
     pub fn new(places: &[Seen], rig: &Rig, level: &dyn Fn(&[f32]) -> f64, films: bool) -> Self {
-        let first = solved(places, rig);
-        let level = level(&first.albedo[1]);
-        let level = if level > 0.0 && level.is_finite() {
-            level
-        } else {
-            1.0
+        let level = |of: &Solved| {
+            let level = level(&of.albedo[1]);
+            match level > 0.0 && level.is_finite() {
+                true => level,
+                false => 1.0,
+            }
         };
+        let mut first = solved(places, rig, 1.0);
+        let rough = level(&first);
+        if (rough - 1.0).abs() > LEVEL {
+            // The gloss that was taken off was as much too bright.
+            first = solved(places, rig, rough);
+        }
+        let level = level(&first);
         let place = |i: usize| Place {
             at: places[i].at,
             shown: places[i].shown.iter().map(|rgb| *rgb / level).collect(),
@@ -161,8 +158,9 @@ fn film(model: &Model) -> Option<Medium> {
     Some(medium)
 }
 
-/// Each place as bare paper of the catalogue.
-fn solved(places: &[Seen], rig: &Rig) -> Solved {
+/// Each place as bare paper of the catalogue, where photographs show this much of a perfect
+/// diffuser.
+fn solved(places: &[Seen], rig: &Rig, level: f64) -> Solved {
     let rows = |places: &[Seen]| -> Vec<[Vec<f32>; 3]> {
         let plane = |i: usize, c: usize| places.iter().map(|of| of.shown[i][c] as f32).collect();
         (0..rig.count())
@@ -171,7 +169,10 @@ fn solved(places: &[Seen], rig: &Rig) -> Solved {
     };
     let solver = |rig: Rig| Solver {
         rig,
-        response: Response::laid_paper(),
+        response: match Response::laid_paper() {
+            Response::Paper(paper) => Response::Paper(paper.at_level(level)),
+            other => other,
+        },
         robustness: Robustness::Robust,
     };
     if matches!(rig.standing, Standing::Far(_)) {

@@ -69,7 +69,8 @@ pub fn solve(directions: &[DVec3], samples: &[Vec<f64>]) -> Option<Vec<f64>> {
     Some(intensities)
 }
 
-fn normalise(values: &mut [f64]) {
+/// Brings their mean to 1.
+pub(in crate::prepare) fn normalise(values: &mut [f64]) {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     values.iter_mut().for_each(|value| *value /= mean);
 }

@@ -47,6 +47,27 @@ pub fn angles(l: DVec3) -> [f64; 2] {
     [azimuth, l.z.atan2(l.x.hypot(l.y)).to_degrees()]
 }
 
+/// So many of these directions at most, far from each other, by their places: the first one, and
+/// then always the one that is farthest from those chosen.
+pub fn far_apart(directions: &[DVec3], most: usize) -> Vec<usize> {
+    let mut chosen = Vec::new();
+    while chosen.len() < most.min(directions.len()) {
+        let nearest = |i: &usize| {
+            let each = chosen
+                .iter()
+                .map(|k: &usize| directions[*k].dot(directions[*i]));
+            each.fold(f64::NEG_INFINITY, f64::max)
+        };
+        let others = (0..directions.len()).filter(|i| !chosen.contains(i));
+        match others.min_by(|a, b| nearest(a).total_cmp(&nearest(b))) {
+            Some(next) => chosen.push(next),
+            None => break,
+        }
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
 /// How well these directions (unit vectors) span space: the smallest singular value over the
 /// largest, in [0, 1].
 ///

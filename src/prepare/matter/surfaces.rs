@@ -52,9 +52,8 @@ pub fn surfaces(
         stack.recycle(band);
     }
     let level = |green: &[f32]| match (&capture.lamps.light, correction) {
-        (Light::FlatField { .. }, _) => 1.0,
-        // A chart says how bright white is.
-        (_, Some(correction)) => 3.0 / correction.apply([1.0; 3]).iter().sum::<f64>(),
+        // What is white was divided out.
+        (Light::FlatField { .. }, _) | (_, Some(_)) => 1.0,
         _ => 1.0 / exposure(green),
     };
     let own = capture.swatches.iter().filter(|swatch| swatch.side == side);

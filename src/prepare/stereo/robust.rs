@@ -34,6 +34,9 @@ const SHADOWED: f32 = 0.5;
 /// n·l over gain below which a lamp grazes the place and says nothing.
 const GRAZING: f32 = 0.02;
 
+/// The volume that three unit vectors span, at least: flatter, they say nothing of a fourth.
+const FLATTEST: f64 = 1e-9;
+
 /// Weights of each photograph in a block: `v` is what a diffuser would show, `g` the plain
 /// solution, `noise` the usual residual over the mean value.
 pub fn weights(
@@ -135,8 +138,12 @@ fn doubtful(a: [DVec3; 4], v: [f64; 4], extremes: bool) -> Option<usize> {
         volume(0, 1, 3),
         -volume(0, 1, 2),
     ];
+    // Of the others' volume: how bright lamps are says nothing of how they stand.
+    let lengths = a.map(DVec3::length);
+    let product: f64 = lengths.iter().product();
+    let flat = |i: usize| u[i].abs() * lengths[i] <= FLATTEST * product;
     let residual: f64 = u.iter().zip(v).map(|(u, v)| u * v).sum();
-    let brightness = |i: usize| v[i] / a[i].length();
+    let brightness = |i: usize| v[i] / lengths[i];
     let order = |a: &usize, b: &usize| brightness(*a).total_cmp(&brightness(*b));
     let darkest = (0..4).min_by(order)?;
     let brightest = (0..4).max_by(order)?;
@@ -144,7 +151,7 @@ fn doubtful(a: [DVec3; 4], v: [f64; 4], extremes: bool) -> Option<usize> {
     let mut shadow: Option<(usize, f64)> = None;
     let mut light: Option<(usize, f64)> = None;
     for i in 0..4 {
-        if u[i].abs() < 1e-9 || (extremes && i != darkest && i != brightest) {
+        if flat(i) || (extremes && i != darkest && i != brightest) {
             continue;
         }
         let excess = residual / u[i];
@@ -168,5 +175,39 @@ fn doubtful(a: [DVec3; 4], v: [f64; 4], extremes: bool) -> Option<usize> {
         (_, Some((i, _))) => Some(i),
         (Some((i, _)), None) => Some(i),
         (None, None) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prepare::lights::direction;
+
+    #[test]
+    fn which_of_four_is_doubted_is_one_for_all_gains() {
+        let towards: [DVec3; 4] =
+            std::array::from_fn(|i| direction(90.0 * i as f64, 40.0 + 5.0 * i as f64));
+        let normal = DVec3::new(0.05, -0.1, 1.0).normalize();
+        for gain in [1e-5, 1.0, 1e5] {
+            let lamps = towards.map(|l| l * gain);
+            let mut shown = lamps.map(|a| a.dot(normal));
+            shown[2] *= 0.3;
+            assert_eq!(doubtful(lamps, shown, false), Some(2), "{gain}");
+            shown[2] *= 5.0;
+            assert_eq!(doubtful(lamps, shown, false), Some(2), "{gain}");
+        }
+    }
+
+    #[test]
+    fn three_in_one_plane_say_nothing_of_the_fourth() {
+        let mut lamps = [0.0, 90.0, 180.0, 270.0].map(|azimuth| direction(azimuth, 40.0));
+        // With the sheet's middle: the first is alone.
+        lamps[3] = (lamps[1] + lamps[2]).normalize();
+        for gain in [1e-5, 1.0, 1e5] {
+            let lamps = lamps.map(|l| l * gain);
+            let mut shown = lamps.map(|a| a.z);
+            shown[0] *= 3.0;
+            assert_ne!(doubtful(lamps, shown, false), Some(0), "{gain}");
+        }
     }
 }

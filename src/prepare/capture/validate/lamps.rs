@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{
     super::{
         Circle, Intensities, Lamps, Light, MAX_LAMPS, MIN_LAMPS, Places, Shots, Sphere,
-        raw::{RawLamps, RawSphere},
+        raw::{RawCapture, RawLamps, RawSphere},
         values::Each,
     },
     Validator,
@@ -290,6 +290,42 @@ impl Validator<'_, '_> {
         }
     }
 
+    /// Warns where the room's light is taken from some photographs, and not from others that say
+    /// how bright lamps are.
+    pub(super) fn room_light(&mut self, raw: &RawCapture, root: &Trail) {
+        let sides = [Some(&raw.recto), raw.verso.as_ref()];
+        let taken = sides.into_iter().flatten().any(|of| of.ambient.is_some());
+        let lamps = root.key("lamps");
+        let cards = raw.lamps.flat_field.is_some();
+        let of_cards = raw.lamps.flat_field_ambient.is_some();
+        if taken && cards && !of_cards {
+            let words = Words::new(
+                "grey cards with the room's light, which is taken from the sheet's photographs",
+                "it taken from both, or from none",
+                "photograph the card with all lamps off too, and add flat_field_ambient = \"…\"; \
+                 else the sheet becomes too dark",
+            );
+            self.report.warn(&lamps.key("flat_field"), words);
+        } else if of_cards && !taken {
+            let words = Words::new(
+                "room light that is taken from grey cards, and not from the sheet's photographs",
+                "it taken from both, or from none",
+                "photograph the sheet with all lamps off too, and add recto.ambient = \"…\"; else \
+                 the sheet becomes too light",
+            );
+            self.report.warn(&lamps.key("flat_field_ambient"), words);
+        }
+        if taken && raw.chart.is_some() && !cards {
+            let words = Words::new(
+                "a chart with the room's light, which is taken from the sheet's photographs",
+                "grey cards under each lamp, which say how bright the room is",
+                "photograph the chart with the room dark, or add lamps.flat_field; else the sheet \
+                 becomes too dark",
+            );
+            self.report.warn(&root.key("chart"), words);
+        }
+    }
+
     fn light(
         &mut self,
         raw: &RawLamps,
@@ -302,6 +338,11 @@ impl Validator<'_, '_> {
             let many = self.as_many(list.len(), count, "photographs of a grey card", &key);
             let like = recto.map(|recto| (recto.size, recto.photographs[0].as_path()));
             let (photographs, size) = self.photographs(list, &key, like);
+            let ambient = raw.flat_field_ambient.as_ref().map(|path| self.path(path));
+            if let Some(path) = &ambient {
+                let like = size.map(|size| (size, photographs[0].as_path()));
+                self.same_size(&[(path, trail.key("flat_field_ambient"))], like)?;
+            }
             many?;
             let size = size?;
             if let Some(verso) = verso.filter(|verso| verso.size != size) {
@@ -319,6 +360,7 @@ impl Validator<'_, '_> {
             return (!list.has_holes()).then_some(Light::FlatField {
                 photographs,
                 reflectance: raw.grey_card.map_or(GREY_CARD, |card| card.0),
+                ambient,
             });
         }
         if let Some(list) = &raw.relative {

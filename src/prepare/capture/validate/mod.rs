@@ -62,6 +62,7 @@ impl Validator<'_, '_> {
                 self.one_each(verso, count, &root.key("verso"));
             }
         }
+        self.room_light(raw, &root);
         let sides = [recto.as_ref(), verso.as_ref().and_then(Option::as_ref)];
         let lamps = placed.and_then(|placed| self.lamps(placed, &raw.lamps, sides, &lamps_trail));
         if let Some(mm) = mm_per_px {
