@@ -302,11 +302,17 @@ pub fn correction(
         path: photograph.clone(),
         why,
     };
-    let size = crate::maps::probe(photograph)?.size;
+    let header = crate::maps::probe(photograph)?;
+    let size = header.size;
     let mut planes = planes(photograph, capture, whole(size), scratch)?;
     let [width, height] = size.map(|v| v as usize);
-    // Clipping shows before the light is evened out.
-    let mut measured = colours(
+    // Clipping shows before the light is evened out; floats have no level of it.
+    let read = if header.float {
+        colours_unclipped
+    } else {
+        colours
+    };
+    let mut measured = read(
         planes.each_ref().map(Vec::as_slice),
         [width, height],
         corners,
