@@ -1,12 +1,9 @@
 //! What can be wrong with an exchange.
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::{io, path::Path};
 
 use crate::{
-    manifest::{Fault, Faults, Severity, document::Words},
+    manifest::{Fault, Faults, Severity, document::Words, staging::StagingError},
     maps::MapError,
 };
 
@@ -19,10 +16,9 @@ pub enum ExchangeError {
     /// Of a picture that cannot be read or written.
     #[error(transparent)]
     Map(#[from] MapError),
-    #[error("{}: is there already; choose another folder or remove it", .0.display())]
-    Exists(PathBuf),
-    #[error("{}: {reason}", path.display())]
-    Folder { path: PathBuf, reason: io::Error },
+    /// Of the folder that is to be filled, or of another one.
+    #[error(transparent)]
+    Staging(#[from] StagingError),
 }
 
 impl From<Fault> for ExchangeError {
@@ -35,7 +31,7 @@ impl ExchangeError {
     /// Of a folder, to be given to `map_err`.
     pub(super) fn folder(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
-        move |reason| Self::Folder { path, reason }
+        move |reason| StagingError::Folder { path, reason }.into()
     }
 }
 

@@ -26,7 +26,7 @@ use super::{
         surface,
     },
     report,
-    stage::Stage,
+    stage,
     stereo::{
         Gain, Response, Rig, Rows, Solver, Standing,
         left_out::{LeftOut, Relit},
@@ -36,7 +36,7 @@ use super::{
     write::{self, SideFiles, SideText, SrgbCodes},
 };
 use crate::{
-    manifest::{Exhibit, Faults, SideName},
+    manifest::{Exhibit, Faults, SideName, staging::StagingError},
     maps::{MapError, room},
 };
 
@@ -71,7 +71,7 @@ pub enum PrepareError {
     },
     #[error("{}: an exhibit is there already; choose another folder or remove the file", .0.display())]
     Exists(PathBuf),
-    #[error("{}: another `recto prepare` is at work in this folder; wait for it, or choose another one", .0.display())]
+    #[error("{}", StagingError::Busy(.0.clone()))]
     Busy(PathBuf),
     #[error("{}: {reason}{}", path.display(), room(reason))]
     Folder { path: PathBuf, reason: io::Error },
@@ -181,7 +181,7 @@ fn staged(
     out: &Path,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Report, PrepareError> {
-    let stage = Stage::new(out)?;
+    let stage = stage::begin(out)?;
     let scratch = stage.path();
     let mut tell = |step, done| progress(Progress { step, done });
     tell("looking for the lamps", 0.0);

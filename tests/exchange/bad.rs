@@ -4,7 +4,10 @@
 use std::fs;
 
 use image::{Rgb, RgbImage};
-use recto::exchange::{self, ExchangeError, Known};
+use recto::{
+    exchange::{self, ExchangeError, Known},
+    manifest::staging::StagingError,
+};
 use serde_json::{Value, json};
 
 use super::Desk;
@@ -277,7 +280,7 @@ fn what_is_there_already_is_left_as_it_is() {
         let error = exchange::import(&desk.folder().join("a.ptm"), &out, &Known::default());
         let error = error.expect_err("refused");
         assert!(
-            matches!(&error, ExchangeError::Exists(path) if path.ends_with(taken)),
+            matches!(&error, ExchangeError::Staging(StagingError::Exists(path)) if path.ends_with(taken)),
             "{error}"
         );
         assert_eq!(

@@ -6,7 +6,7 @@ use glam::DVec2;
 use image::{GrayImage, RgbImage};
 use recto::{
     exchange::{self, DEFAULT_BASE, ExchangeError, Exported, Known},
-    manifest::{Exhibit, OverlayKind, SideName},
+    manifest::{Exhibit, OverlayKind, SideName, staging::StagingError},
     maps,
 };
 use serde_json::{Value, json};
@@ -354,7 +354,7 @@ fn an_export_leaves_what_is_there_as_it_is() {
     let (exhibit, ..) = exported(&desk, DEFAULT_BASE);
     let again = exchange::export_iiif(&exhibit, &desk.folder(), DEFAULT_BASE).expect_err("refused");
     assert!(
-        matches!(&again, ExchangeError::Exists(path) if path.ends_with("manifest.json")),
+        matches!(&again, ExchangeError::Staging(StagingError::Exists(path)) if path.ends_with("manifest.json")),
         "{again}"
     );
     // A picture that breaks in the middle leaves nothing.
