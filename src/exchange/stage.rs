@@ -2,32 +2,32 @@
 
 use std::{fs, path::Path};
 
-use super::ExchangeError;
+use super::{ExchangeError, error::made_of};
+use crate::manifest::{Exhibit, Fault, staging::Staging};
 
-/// Fills a folder beside its place through `work`, and then moves everything by these `names` to
-/// `out`, the last of them last: whoever opens `out` meanwhile sees nothing, or the whole. Names
-/// that `work` does not make are passed over. `out` and the folders above it are made where they
+/// Fills a folder within `out` through `work`, and then moves everything by these `names` to `out`,
+/// the last of them last, as [`Staging`] says. `out` and the folders above it are made where they
 /// are absent.
 ///
 /// # Errors
-/// Where one of the names is in `out` already, or nothing can be written there, and those of
-/// `work`; then nothing is in `out` that was not there before.
+/// Those of [`Staging`], and those of `work`; then nothing is in `out` that was not there before.
 pub fn whole<T>(
     out: &Path,
-    names: &[&str],
+    names: &'static [&'static str],
     work: impl FnOnce(&Path) -> Result<T, ExchangeError>,
 ) -> Result<T, ExchangeError> {
-    // What makes a folder an exhibit is named last, and told of first.
-    if let Some(taken) = names.iter().rev().find(|name| out.join(name).exists()) {
-        return Err(ExchangeError::Exists(out.join(taken)));
-    }
     let missing = out
         .ancestors()
         .take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
     let made: Vec<_> = missing.map(Path::to_owned).collect();
     let result = fs::create_dir_all(out)
         .map_err(ExchangeError::folder(out))
-        .and_then(|()| staged(out, names, work));
+        .and_then(|()| {
+            let staging = Staging::new(out, names)?;
+            let done = work(staging.path())?;
+            staging.publish()?;
+            Ok(done)
+        });
     if result.is_err() {
         // Only empty ones: somebody else may have put something there meanwhile.
         for folder in made {
@@ -37,29 +37,19 @@ pub fn whole<T>(
     result
 }
 
-fn staged<T>(
-    out: &Path,
-    names: &[&str],
-    work: impl FnOnce(&Path) -> Result<T, ExchangeError>,
-) -> Result<T, ExchangeError> {
-    let stage = tempfile::Builder::new()
-        .prefix(".recto-exchange-")
-        .tempdir_in(out)
-        .map_err(ExchangeError::folder(out))?;
-    let done = work(stage.path())?;
-    let mut moved = Vec::new();
-    for name in names {
-        let (from, to) = (stage.path().join(name), out.join(name));
-        if !from.exists() {
-            continue;
+/// Reads the exhibit that was made of `file` in the folder `staged`, as `recto check` does, and
+/// gives its warnings, by the names that its files will have in `out`.
+///
+/// # Errors
+/// Its faults, as those of `file`.
+pub fn checked(file: &Path, staged: &Path, out: &Path) -> Result<Vec<Fault>, ExchangeError> {
+    let (_, mut warnings) = Exhibit::read(staged).map_err(|faults| made_of(file, faults))?;
+    for warning in &mut warnings {
+        if let Some(file) = &mut warning.file
+            && let Ok(own) = file.strip_prefix(staged)
+        {
+            *file = out.join(own);
         }
-        if let Err(reason) = fs::rename(&from, &to) {
-            for (from, to) in moved {
-                let _ = fs::rename(to, from);
-            }
-            return Err(ExchangeError::Folder { path: to, reason });
-        }
-        moved.push((from, to));
     }
-    Ok(done)
+    Ok(warnings)
 }

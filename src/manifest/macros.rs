@@ -11,7 +11,8 @@ macro_rules! number {
         pub struct $name(pub f64);
 
         impl $name {
-            #[allow(dead_code, reason = "most are asked for by decoding alone")]
+            /// What it may be, ends included.
+            #[allow(dead_code, reason = "few are asked for it outside of a file")]
             pub const RANGE: std::ops::RangeInclusive<f64> = $min..=$max;
         }
 

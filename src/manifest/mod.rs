@@ -12,6 +12,7 @@
 //! | a photograph → which of its pixels no sheet gives back | [`capture`] |
 //! | a starting manifest from one picture | [`create`] |
 //! | schema and shape of every file that people write | `shape` |
+//! | a folder that a command fills whole or not at all | [`staging`] |
 //! | which version of a published exhibit is shown | [`published`] |
 //! | a lamp or camera in one line | `overrides::spec` |
 //! | what lies over a side, as one picture each | [`Scene::laid`], [`Overlay::load`] |
@@ -42,6 +43,7 @@ pub mod readout;
 mod save;
 mod schema;
 pub(crate) mod shape;
+pub mod staging;
 pub mod surface;
 mod validate;
 

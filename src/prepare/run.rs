@@ -29,7 +29,7 @@ use super::{
     report,
     residuals::Residuals,
     solve::{Side, Solved, solve_side},
-    stage::Stage,
+    stage,
     stereo::{
         Gain, Rig, Standing,
         left_out::{Relit, RelitOne},
@@ -39,7 +39,7 @@ use super::{
     write::{self, SideFiles, SideText},
 };
 use crate::{
-    manifest::{Exhibit, Faults, SideName},
+    manifest::{Exhibit, Faults, SideName, staging::StagingError},
     maps::{MapError, room},
 };
 
@@ -76,7 +76,7 @@ pub enum PrepareError {
     },
     #[error("{}: an exhibit is there already; choose another folder or remove the file", .0.display())]
     Exists(PathBuf),
-    #[error("{}: another `recto prepare` is at work in this folder; wait for it, or choose another one", .0.display())]
+    #[error("{}", StagingError::Busy(.0.clone()))]
     Busy(PathBuf),
     #[error("{}: {reason}{}", path.display(), room(reason))]
     Folder { path: PathBuf, reason: io::Error },
@@ -201,7 +201,7 @@ fn staged(
     out: &Path,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Report, PrepareError> {
-    let stage = Stage::new(out)?;
+    let stage = stage::begin(out)?;
     let scratch = stage.path();
     let mut tell = |step, done| progress(Progress { step, done });
     tell("looking for the lamps", 0.0);

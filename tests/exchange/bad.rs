@@ -4,7 +4,10 @@
 use std::fs;
 
 use image::{Rgb, RgbImage};
-use recto::exchange::{self, ExchangeError, Known};
+use recto::{
+    exchange::{self, ExchangeError, Known},
+    manifest::staging::StagingError,
+};
 use serde_json::{Value, json};
 
 use super::Desk;
@@ -185,6 +188,19 @@ fn a_broken_info_json_is_refused_in_words() {
     fs::remove_file(desk.folder().join("plane_0.png")).expect("removed");
     assert!(desk.refusal("info.json").contains("cut into tiles"));
 
+    // One of another size is not unpacked: its body is cut off, and nobody looks.
+    let desk = planes();
+    let path = desk.folder().join("plane_1.png");
+    let noise = |x: u32, y: u32| Rgb([x as u8, y as u8, (x ^ y) as u8]);
+    RgbImage::from_fn(64, 64, noise)
+        .save(&path)
+        .expect("written");
+    let bytes = fs::read(&path).expect("read");
+    fs::write(&path, &bytes[..bytes.len() / 2]).expect("written");
+    desk.write("info.json", info().to_string());
+    let words = desk.refusal("info.json");
+    assert!(words.contains("64 × 64 pixels"), "{words}");
+
     // A broken picture is told by its own name.
     let desk = planes();
     desk.write("plane_2.png", "no picture");
@@ -277,7 +293,7 @@ fn what_is_there_already_is_left_as_it_is() {
         let error = exchange::import(&desk.folder().join("a.ptm"), &out, &Known::default());
         let error = error.expect_err("refused");
         assert!(
-            matches!(&error, ExchangeError::Exists(path) if path.ends_with(taken)),
+            matches!(&error, ExchangeError::Staging(StagingError::Exists(path)) if path.ends_with(taken)),
             "{error}"
         );
         assert_eq!(

@@ -120,7 +120,7 @@ fn what_was_killed_is_cleared_by_the_next_run() {
         .stderr(Stdio::null())
         .spawn()
         .expect("started");
-    let staged = |names: &[String]| names.iter().any(|name| name.starts_with(".recto-prepare-"));
+    let staged = |names: &[String]| names.iter().any(|name| name.starts_with(".recto-staging-"));
     for _ in 0..2000 {
         if staged(&names(&out)) || child.try_wait().expect("a state").is_some() {
             break;
@@ -147,9 +147,10 @@ fn what_was_killed_while_it_took_its_place_is_cleared_too() {
     let out = folder.path().join("out");
     run(&capture, &out).expect("prepared");
     // As if it had ended after the first change of names.
-    let stage = out.join(".recto-prepare-abc");
+    let stage = out.join(".recto-staging-abc");
     fs::create_dir(&stage).expect("made");
-    fs::write(stage.join(".publishing"), "").expect("written");
+    let order = "maps\nreport.html\nexhibit.toml";
+    fs::write(stage.join(".publishing"), order).expect("written");
     for name in ["exhibit.toml", "report.html"] {
         fs::rename(out.join(name), stage.join(name)).expect("moved");
     }
@@ -180,7 +181,7 @@ fn what_is_somebody_elses_stays() {
         fs::remove_file(own).expect("removed");
     }
     // A staging folder that never began to take its place says nothing of what is there.
-    fs::create_dir_all(out.join(".recto-prepare-abc")).expect("made");
+    fs::create_dir_all(out.join(".recto-staging-abc")).expect("made");
     fs::write(out.join("maps"), "mine").expect("written");
     assert!(matches!(run(&capture, &out), Err(PrepareError::Exists(_))));
     assert_eq!(fs::read_to_string(out.join("maps")).expect("text"), "mine");
@@ -191,9 +192,9 @@ fn two_at_once_do_not_meet() {
     let folder = folder();
     let capture = capture(folder.path(), SIDE);
     let out = folder.path().join("out");
-    let stage = out.join(".recto-prepare-abc");
+    let stage = out.join(".recto-staging-abc");
     fs::create_dir_all(&stage).expect("made");
-    let lock = File::create(out.join(".recto-prepare.lock")).expect("made");
+    let lock = File::create(out.join(".recto.lock")).expect("made");
     lock.lock().expect("locked");
     let error = run(&capture, &out).expect_err("busy");
     assert!(matches!(error, PrepareError::Busy(_)));
