@@ -71,6 +71,9 @@ impl Desk {
         let (exhibit, _) = Exhibit::read(&self.out()).expect("an exhibit");
         // Bodies of pictures too.
         exhibit.verify(exhibit.maps()).expect("sound pictures");
+        for file in imported.warnings.iter().filter_map(|w| w.file.as_ref()) {
+            assert!(file.is_file(), "{} is not there", file.display());
+        }
         let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
         (exhibit, warnings.join("\n"))
     }

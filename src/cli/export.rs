@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Failure, output};
+use super::{Failure, output, report::counted};
 use crate::exchange::{self, DEFAULT_BASE};
 
 /// What help says below the options.
@@ -10,8 +10,8 @@ pub const HELP: &str = "\
 With --iiif, DIR gets a manifest.json after IIIF Presentation 3 and a folder of images: a canvas for
 each side with its size in mm, states, bands and overlays as choices of the same canvas, hotspots as
 annotations, texts in all their languages. Pictures that browsers show are copied as they are;
-others, and those that are placed by register or control points, are written as PNG. Relief, gloss and
-lamps have no place in IIIF and stay behind.
+others, and those that are placed by register or control points, are written as PNG. Relief, gloss,
+lamps and the outline of the sheet (torn edges, holes) have no place in IIIF and stay behind.
 
 Ids of IIIF are addresses on the web: say with --base where DIR will be. To try it here, run
 `python3 -m http.server` in DIR and give a viewer the address of manifest.json there.";
@@ -55,9 +55,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::can_write_folder(&arguments.out)?;
     let exhibit = super::read(&arguments.exhibit)?;
     let exported = exchange::export_iiif(&exhibit, &arguments.out, &arguments.base)?;
+    let canvases = match exported.canvases {
+        1 => "1 canvas".to_owned(),
+        several => format!("{several} canvases"),
+    };
     output::say(format_args!(
-        "{} canvases with {} pictures, at {}",
-        exported.canvases, exported.pictures, arguments.base
+        "{canvases} with {}, at {}",
+        counted(exported.pictures, "picture"),
+        arguments.base
     ));
     output::result(exported.manifest.display())
 }

@@ -17,15 +17,18 @@ use serde_json::Value;
 
 use super::{
     ASSUMED_MM_PER_PX, ExchangeError, Imported, Known,
-    error::{Faulty, whole_file},
+    error::{Faulty, made_of, whole_file},
     json::{self, found},
     stage,
 };
 use crate::{
-    manifest::{document::Words, quote},
+    manifest::{document::Words, fault::natural, quote, raw::values::PositionMm},
     maps::{self, encode::write_whole},
     prepare::{
-        capture::{CAPTURE, Capture, MAX_LAMPS, MIN_LAMPS},
+        capture::{
+            CAPTURE, Capture, MAX_LAMPS, MIN_LAMPS,
+            values::{LampElevationDeg, PixelMm},
+        },
         lights::{angles, lp},
     },
 };
@@ -34,6 +37,8 @@ use crate::{
 const PICTURES: [&str; 6] = ["tif", "tiff", "png", "jpg", "jpeg", "exr"];
 /// No lamp of a dome is nearer to the sheet than this many mm; one that seems to be is in cm.
 const NEAREST_MM: f64 = 30.0;
+/// The key of what a dome's pictures show across.
+const IMAGE_WIDTH: &str = "imageWidth";
 /// How far a size may be from the photographs' proportions: it is measured with a ruler.
 const PROPORTIONS: f64 = 0.03;
 
@@ -128,17 +133,23 @@ pub(super) fn import_dome(
         let remedy = "name the folder of the photographs alone with --photographs";
         faulty.fault("", Words::new(found, allowed, remedy));
     }
+    let width = json.get("imageWidth").filter(|width| !width.is_null());
+    let shown_mm = width.and_then(Value::as_f64);
+    if width.is_some() && shown_mm.is_none_or(|mm| mm < 0.0) {
+        let allowed = "what the pictures show across, in mm, or 0 where it is not known";
+        let remedy = "correct it, or leave it out and give --size-mm";
+        faulty.fault(IMAGE_WIDTH, Words::new(found(width), allowed, remedy));
+    }
     let Some((are_places, lamps)) = lamps else {
         return Err(ended(file, faulty));
     };
     faulty.check()?;
-    let width = json.get("imageWidth").and_then(Value::as_f64);
     let task = Task {
         file,
         known,
         faulty,
         photographs,
-        shown_mm: width.filter(|width| *width > 0.0),
+        shown_mm: shown_mm.filter(|mm| *mm > 0.0),
     };
     task.capture(out, |_| Ok(written(are_places, &lamps)))
 }
@@ -194,13 +205,40 @@ fn dome(json: &Value, faulty: &mut Faulty<'_>) -> Option<(bool, Vec<DVec3>)> {
         .iter()
         .map(|lamp| lamp.length())
         .fold(f64::INFINITY, f64::min);
-    if are_places && nearest < NEAREST_MM {
+    let in_mm = are_places && nearest >= NEAREST_MM;
+    if are_places && !in_mm {
         let found = format!("a lamp {nearest:.1} mm from the middle of the picture");
         let remedy = "lamps are taken as far away; if these are cm, write position_mm yourself";
         faulty.warning(key, Words::new(found, "", remedy));
-        return Some((false, lamps));
     }
-    Some((are_places, lamps))
+    let (least, most) = (LampElevationDeg::RANGE.start(), PositionMm::RANGE.end());
+    let mut sound = true;
+    for (i, lamp) in lamps.iter().enumerate() {
+        let elevation = angles(*lamp)[1];
+        let (is_possible, found, allowed) = match in_mm {
+            true => (
+                lamp.abs().max_element() <= *most && rounded_mm(lamp.z) > 0.0,
+                list[i].to_string(),
+                format!("places up to {most} mm away, above the picture"),
+            ),
+            false => (
+                elevation >= *least,
+                format!("a lamp {elevation:.2}° above the picture"),
+                format!("lamps from {least}° up"),
+            ),
+        };
+        if !is_possible {
+            let words = Words::new(found, allowed, "calibrate this lamp again");
+            faulty.fault(format!("{key}[{i}]"), words);
+            sound = false;
+        }
+    }
+    sound.then_some((in_mm, lamps))
+}
+
+/// To a hundredth of a millimetre.
+fn rounded_mm(mm: f64) -> f64 {
+    (mm * 100.0).round() / 100.0
 }
 
 /// `{ x, y, z }`, or a list of three.
@@ -218,13 +256,12 @@ fn written(are_places: bool, lamps: &[DVec3]) -> String {
     /// Straight above there is no azimuth.
     const HIGHEST_DEG: f64 = 89.99;
     if are_places {
-        let rounded = |v: f64| (v * 100.0).round() / 100.0;
         let places = lamps.iter().map(|lamp| {
             format!(
                 "    [{:?}, {:?}, {:?}],\n",
-                rounded(lamp.x),
-                rounded(lamp.y),
-                rounded(lamp.z)
+                rounded_mm(lamp.x),
+                rounded_mm(lamp.y),
+                rounded_mm(lamp.z)
             )
         });
         return format!("position_mm = [\n{}]\n", places.collect::<String>());
@@ -255,24 +292,6 @@ fn pictures(folder: &Path) -> Result<Vec<PathBuf>, ExchangeError> {
     }
     found.sort_by_cached_key(|path| natural(&path.to_string_lossy()));
     Ok(found)
-}
-
-/// A key that sorts `img2` before `img10`.
-fn natural(name: &str) -> Vec<(String, u64)> {
-    let mut parts = Vec::new();
-    let mut rest = name;
-    while !rest.is_empty() {
-        let digits = rest
-            .find(|c: char| c.is_ascii_digit())
-            .unwrap_or(rest.len());
-        let (word, numbered) = rest.split_at(digits);
-        let end = numbered
-            .find(|c: char| !c.is_ascii_digit())
-            .unwrap_or(numbered.len());
-        parts.push((word.to_owned(), numbered[..end].parse().unwrap_or(u64::MAX)));
-        rest = &numbered[end..];
-    }
-    parts
 }
 
 /// Photographs that become a capture.
@@ -318,7 +337,8 @@ impl Task<'_> {
             }
             text += "]\n";
             // Where it will be, so that its paths are those that are checked.
-            let (_, warnings) = Capture::parse(&out.join(CAPTURE), &text)?;
+            let (_, warnings) = Capture::parse(&out.join(CAPTURE), &text)
+                .map_err(|faults| made_of(self.file, faults))?;
             write_whole(&folder.join(CAPTURE), |file| {
                 file.write_all(text.as_bytes())
             })?;
@@ -354,6 +374,22 @@ impl Task<'_> {
         }
         let shown = self.known.size_mm.map(|size| size[0]).or(self.shown_mm);
         let mm_per_px = shown.map(|mm| (mm / width * 1e6).round() / 1e6);
+        if let (Some(shown), Some(mm_per_px)) = (shown, mm_per_px)
+            && !PixelMm::RANGE.contains(&mm_per_px)
+        {
+            let (path, found) = match self.known.size_mm {
+                Some(_) => ("", format!("--size-mm with a width of {shown}")),
+                None => (IMAGE_WIDTH, shown.to_string()),
+            };
+            let [least, most] = [PixelMm::RANGE.start(), PixelMm::RANGE.end()].map(|mm| mm * width);
+            let words = Words::new(
+                found,
+                format!("{least} to {most} mm across photographs of {width} pixels"),
+                "write what the photographs show across, in mm",
+            );
+            self.faulty.fault(path, words);
+        }
+        self.faulty.check()?;
         Ok(mm_per_px.unwrap_or_else(|| {
             let found = "nothing about how large a pixel is on the sheet";
             let remedy = format!(
@@ -405,10 +441,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_sort_by_their_numbers_and_ways_lead_there() {
-        let mut names = ["b10.png", "b9.png", "a.png", "b010x.png"];
-        names.sort_by_cached_key(|name| natural(name));
-        assert_eq!(names, ["a.png", "b9.png", "b10.png", "b010x.png"]);
+    fn ways_lead_there() {
         let way = |from: &str, to: &str| relative(Path::new(from), Path::new(to));
         assert_eq!(
             way("/a/out", "/a/photos/1.jpg"),

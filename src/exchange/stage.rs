@@ -2,8 +2,8 @@
 
 use std::{fs, path::Path};
 
-use super::ExchangeError;
-use crate::manifest::staging::Staging;
+use super::{ExchangeError, error::made_of};
+use crate::manifest::{Exhibit, Fault, staging::Staging};
 
 /// Fills a folder within `out` through `work`, and then moves everything by these `names` to `out`,
 /// the last of them last, as [`Staging`] says. `out` and the folders above it are made where they
@@ -35,4 +35,21 @@ pub fn whole<T>(
         }
     }
     result
+}
+
+/// Reads the exhibit that was made of `file` in the folder `staged`, as `recto check` does, and
+/// gives its warnings, by the names that its files will have in `out`.
+///
+/// # Errors
+/// Its faults, as those of `file`.
+pub fn checked(file: &Path, staged: &Path, out: &Path) -> Result<Vec<Fault>, ExchangeError> {
+    let (_, mut warnings) = Exhibit::read(staged).map_err(|faults| made_of(file, faults))?;
+    for warning in &mut warnings {
+        if let Some(file) = &mut warning.file
+            && let Ok(own) = file.strip_prefix(staged)
+        {
+            *file = out.join(own);
+        }
+    }
+    Ok(warnings)
 }

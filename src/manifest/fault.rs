@@ -127,7 +127,25 @@ impl std::error::Error for Faults {}
 
 /// Orders faults as somebody meets them who reads file after file from its top.
 pub(crate) fn sort(faults: &mut [Fault]) {
-    faults.sort_by(|a, b| (&a.file, a.place, &a.path).cmp(&(&b.file, b.place, &b.path)));
+    faults.sort_by_cached_key(|fault| (fault.file.clone(), fault.place, natural(&fault.path)));
+}
+
+/// A key that sorts `img2` before `img10`.
+pub(crate) fn natural(name: &str) -> Vec<(String, u64)> {
+    let mut parts = Vec::new();
+    let mut rest = name;
+    while !rest.is_empty() {
+        let digits = rest
+            .find(|c: char| c.is_ascii_digit())
+            .unwrap_or(rest.len());
+        let (word, numbered) = rest.split_at(digits);
+        let end = numbered
+            .find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(numbered.len());
+        parts.push((word.to_owned(), numbered[..end].parse().unwrap_or(u64::MAX)));
+        rest = &numbered[end..];
+    }
+    parts
 }
 
 /// The word of `words` that was probably meant by `word`, if any is near enough.
@@ -212,7 +230,9 @@ pub fn quote(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::path::Path;
+
+    use super::{super::document::Words, *};
 
     #[test]
     fn a_near_word_is_offered_and_a_far_one_is_not() {
@@ -221,6 +241,34 @@ mod tests {
         assert_eq!(nearest("ROUGHNESS", words), Some("roughness"));
         assert_eq!(nearest("colour", words), None);
         assert_eq!(nearest(&"a".repeat(100_000), words), None);
+    }
+
+    #[test]
+    fn names_sort_by_their_numbers() {
+        let mut names = ["b10.png", "b9.png", "a.png", "b010x.png"];
+        names.sort_by_cached_key(|name| natural(name));
+        assert_eq!(names, ["a.png", "b9.png", "b10.png", "b010x.png"]);
+        let fault = |path: &str| Fault {
+            path: path.to_owned(),
+            ..Words::new("", "", "").of_file(Path::new("book.json"))
+        };
+        let faults = [
+            "items[10].id",
+            "items[2]",
+            "items[1].items[11]",
+            "items[1].items[3]",
+        ];
+        let faults = Faults::new(faults.map(fault).to_vec()).unwrap();
+        let paths: Vec<&str> = faults.iter().map(|fault| fault.path.as_str()).collect();
+        assert_eq!(
+            paths,
+            [
+                "items[1].items[3]",
+                "items[1].items[11]",
+                "items[2]",
+                "items[10].id"
+            ]
+        );
     }
 
     #[test]

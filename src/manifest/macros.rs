@@ -10,6 +10,12 @@ macro_rules! number {
         #[serde(transparent)]
         pub struct $name(pub f64);
 
+        impl $name {
+            /// What it may be, ends included.
+            #[allow(dead_code, reason = "few are asked for it outside of a file")]
+            pub const RANGE: std::ops::RangeInclusive<f64> = $min..=$max;
+        }
+
         impl $crate::manifest::decode::Decode for $name {
             fn allowed() -> String {
                 $crate::manifest::raw::values::number_allowed($min, $max, $unit)

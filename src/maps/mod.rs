@@ -17,6 +17,7 @@
 //!
 //! Rows run from the top of the picture, pixels from its left, channels interleaved.
 
+mod accessors;
 mod bands;
 mod bare;
 mod colour_map;

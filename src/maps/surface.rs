@@ -3,9 +3,18 @@
 use std::{borrow::Cow, io::Write as _, path::Path};
 
 use glam::{DVec2, DVec3};
-use gltf::binary::{Glb, Header};
+use gltf::{
+    Semantic,
+    accessor::{DataType, Dimensions},
+    binary::{Glb, Header},
+    mesh::Primitive,
+};
 
-use super::{MapError, encode::write_whole};
+use super::{
+    MapError,
+    accessors::{self, Expected, MOST_INDICES, MOST_VERTICES},
+    encode::write_whole,
+};
 
 /// A modelled sheet.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,10 +31,19 @@ pub struct Model {
 ///
 /// # Errors
 /// [`MapError::Read`], [`MapError::Damaged`], or [`MapError::Unsupported`] for data in other
-/// files, other primitives, or missing texture coordinates.
+/// files, other primitives, missing texture coordinates, or more vertices than a sheet has.
 pub fn load_gltf(path: &Path) -> Result<Model, MapError> {
     let bytes = std::fs::read(path).map_err(|error| MapError::read(path, error))?;
-    let gltf = gltf::Gltf::from_slice(&bytes).map_err(|error| MapError::damaged(path, error))?;
+    model(path, &bytes)
+}
+
+fn model(path: &Path, bytes: &[u8]) -> Result<Model, MapError> {
+    // The header's own 12 bytes are taken from this number without a look.
+    let length = bytes.get(8..12).and_then(|bytes| bytes.try_into().ok());
+    if bytes.starts_with(b"glTF") && length.is_none_or(|length| u32::from_le_bytes(length) < 12) {
+        return Err(MapError::damaged(path, "its header ends too early"));
+    }
+    let gltf = gltf::Gltf::from_slice(bytes).map_err(|error| MapError::damaged(path, error))?;
     let unsupported = |found: &str| {
         MapError::unsupported(
             path,
@@ -48,6 +66,7 @@ pub fn load_gltf(path: &Path) -> Result<Model, MapError> {
         return Err(unsupported("holds no plain triangles"));
     }
     let blob = gltf.blob.as_deref();
+    check(path, &primitive, blob.map_or(0, <[u8]>::len))?;
     let reader = primitive.reader(|_| blob);
     let positions: Vec<DVec3> = reader
         .read_positions()
@@ -77,6 +96,45 @@ pub fn load_gltf(path: &Path) -> Result<Model, MapError> {
         uvs,
         indices,
     })
+}
+
+/// Checks the arrays that are read.
+fn check(path: &Path, primitive: &Primitive<'_>, bytes: usize) -> Result<(), MapError> {
+    let arrays = [
+        (
+            primitive.get(&Semantic::Positions),
+            Expected {
+                name: "positions",
+                types: &[DataType::F32],
+                dimensions: Dimensions::Vec3,
+                most: MOST_VERTICES,
+            },
+        ),
+        (
+            primitive.get(&Semantic::TexCoords(0)),
+            Expected {
+                name: "texture coordinates",
+                types: &[DataType::U8, DataType::U16, DataType::F32],
+                dimensions: Dimensions::Vec2,
+                most: MOST_VERTICES,
+            },
+        ),
+        (
+            primitive.indices(),
+            Expected {
+                name: "indices",
+                types: &[DataType::U8, DataType::U16, DataType::U32],
+                dimensions: Dimensions::Scalar,
+                most: MOST_INDICES,
+            },
+        ),
+    ];
+    for (accessor, expected) in &arrays {
+        if let Some(accessor) = accessor {
+            accessors::check(path, accessor, expected, bytes)?;
+        }
+    }
+    Ok(())
 }
 
 /// Writes a modelled sheet as a binary glTF file (`.glb`) that [`load_gltf`] reads, in the same
@@ -171,4 +229,167 @@ pub fn save_gltf(path: &Path, model: &Model, normals: &[DVec3]) -> Result<(), Ma
 
 fn floats<const N: usize>(vectors: impl Iterator<Item = [f64; N]>) -> Vec<f32> {
     vectors.flatten().map(|v| v as f32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    /// A sound file of a sheet with two triangles.
+    fn sound() -> Vec<u8> {
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+        let model = Model {
+            positions: corners.map(|uv| (uv * 100.0).extend(1.0)).to_vec(),
+            uvs: corners.to_vec(),
+            indices: vec![0, 1, 2, 1, 3, 2],
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sheet.glb");
+        save_gltf(&path, &model, &[DVec3::Z; 4]).unwrap();
+        std::fs::read(path).unwrap()
+    }
+
+    /// The same with its JSON changed.
+    fn changed(change: &dyn Fn(&mut Value)) -> Vec<u8> {
+        let bytes = sound();
+        let glb = Glb::from_slice(&bytes).unwrap();
+        let mut json: Value = serde_json::from_slice(&glb.json).unwrap();
+        change(&mut json);
+        let json = json.to_string().into_bytes().into();
+        Glb { json, ..glb }.to_vec().unwrap()
+    }
+
+    fn refusal(bytes: &[u8]) -> String {
+        let error = model(Path::new("sheet.glb"), bytes).unwrap_err();
+        error.to_string()
+    }
+
+    #[test]
+    fn arrays_that_are_not_there_are_refused_in_words() {
+        let path = Path::new("sheet.glb");
+        assert_eq!(model(path, &sound()).unwrap().positions.len(), 4);
+        let sparse = |count: u64, view: u64| {
+            json!({ "count": count, "indices": { "bufferView": view, "componentType": 5121 },
+                "values": { "bufferView": 0 } })
+        };
+        type Change<'c> = (&'c dyn Fn(&mut Value), &'c str);
+        let cases: [Change; 13] = [
+            (
+                &|v| v["bufferViews"][0]["byteStride"] = json!(4),
+                "every 4 bytes",
+            ),
+            (
+                &|v| v["accessors"][0]["count"] = json!(5),
+                "take 60 bytes of a bufferView of 48",
+            ),
+            (
+                &|v| v["accessors"][2]["count"] = json!(0),
+                "0 texture coordinates",
+            ),
+            (
+                &|v| v["accessors"][3]["count"] = json!(1_u64 << 40),
+                "fewer triangles",
+            ),
+            (&|v| v["accessors"][1]["byteOffset"] = json!(4), ""),
+            (
+                &|v| v["accessors"][0]["byteOffset"] = json!(u64::MAX),
+                "of a bufferView of 48",
+            ),
+            (
+                &|v| v["bufferViews"][0]["byteOffset"] = json!(u64::MAX),
+                "in the file",
+            ),
+            (
+                &|v| v["bufferViews"][3]["byteLength"] = json!(u64::MAX),
+                "in the file",
+            ),
+            (
+                &|v| v["accessors"][0]["type"] = json!("VEC2"),
+                "positions as",
+            ),
+            (
+                &|v| v["accessors"][2]["componentType"] = json!(5125),
+                "texture coordinates as",
+            ),
+            (
+                &|v| {
+                    let accessor = v["accessors"][0].as_object_mut().unwrap();
+                    accessor.remove("bufferView");
+                    accessor.insert("count".to_owned(), json!(1_u64 << 40));
+                    accessor.insert("sparse".to_owned(), sparse(1, 3));
+                },
+                "1099511627776 positions, more than 4000000",
+            ),
+            (
+                &|v| v["accessors"][0]["sparse"] = sparse(5, 3),
+                "5 are sparse",
+            ),
+            (
+                &|v| v["accessors"][0]["sparse"] = sparse(0, 3),
+                "0 are sparse",
+            ),
+        ];
+        for (change, words) in cases {
+            let bytes = changed(change);
+            if words.is_empty() {
+                // Normals are not read.
+                model(path, &bytes).unwrap();
+                continue;
+            }
+            let found = refusal(&bytes);
+            assert!(
+                found.starts_with("sheet.glb: ") && found.contains(words),
+                "{words}: {found}"
+            );
+        }
+        // Within the bytes that there are, a sparse array is read.
+        let bytes = changed(&|v| {
+            v["accessors"][0]["sparse"] = json!({ "count": 1, "indices": { "bufferView": 3,
+                "componentType": 5125 }, "values": { "bufferView": 0, "byteOffset": 36 } });
+        });
+        let moved = model(path, &bytes).unwrap();
+        assert_eq!(moved.positions[0], DVec3::new(100.0, 100.0, 1.0));
+    }
+
+    #[test]
+    fn broken_files_never_panic() {
+        let path = Path::new("sheet.glb");
+        let sound = sound();
+        for end in 0..sound.len() {
+            let _ = model(path, &sound[..end]);
+        }
+        for at in 0..sound.len() {
+            for mask in [1, 2, 4, 8, 0x10, 0x40, 0x80, 0xff] {
+                let mut bytes = sound.clone();
+                bytes[at] ^= mask;
+                let _ = model(path, &bytes);
+            }
+        }
+        // Numbers of all sizes, in the place of every digit.
+        let glb = Glb::from_slice(&sound).unwrap();
+        let json = glb.json.clone();
+        for at in (0..json.len()).filter(|at| json[*at].is_ascii_digit()) {
+            for digits in [
+                "0",
+                "99",
+                "4294967295",
+                "1099511627776",
+                "18446744073709551615",
+            ] {
+                let json = [&json[..at], digits.as_bytes(), &json[at + 1..]].concat();
+                let glb = Glb {
+                    json: json.into(),
+                    ..glb.clone()
+                };
+                let _ = model(path, &glb.to_vec().unwrap());
+            }
+        }
+        for length in 0..16 {
+            let mut bytes = sound.clone();
+            bytes[8..12].copy_from_slice(&u32::to_le_bytes(length));
+            let _ = model(path, &bytes);
+        }
+    }
 }

@@ -188,6 +188,19 @@ fn a_broken_info_json_is_refused_in_words() {
     fs::remove_file(desk.folder().join("plane_0.png")).expect("removed");
     assert!(desk.refusal("info.json").contains("cut into tiles"));
 
+    // One of another size is not unpacked: its body is cut off, and nobody looks.
+    let desk = planes();
+    let path = desk.folder().join("plane_1.png");
+    let noise = |x: u32, y: u32| Rgb([x as u8, y as u8, (x ^ y) as u8]);
+    RgbImage::from_fn(64, 64, noise)
+        .save(&path)
+        .expect("written");
+    let bytes = fs::read(&path).expect("read");
+    fs::write(&path, &bytes[..bytes.len() / 2]).expect("written");
+    desk.write("info.json", info().to_string());
+    let words = desk.refusal("info.json");
+    assert!(words.contains("64 × 64 pixels"), "{words}");
+
     // A broken picture is told by its own name.
     let desk = planes();
     desk.write("plane_2.png", "no picture");

@@ -589,3 +589,96 @@ fn outlines_that_are_none_are_left_out() {
     assert_eq!(exhibit.drawings[0].hotspots.len(), 1);
     assert_eq!(warnings.matches("it is left out").count(), 6, "{warnings}");
 }
+
+#[test]
+fn what_both_sides_call_alike_has_ids_that_differ() {
+    let mut manifest = foreign();
+    let body = |v: &Value, i: usize| v["items"][i]["items"][0]["items"][0]["body"].clone();
+    let mut choice = body(&manifest, 0);
+    choice["items"][0] = body(&manifest, 1);
+    // Another infrared on each side, which says no wavelength.
+    for (own, label) in [(1, "Infrared (940 nm)"), (2, "Infrared")] {
+        choice["items"][own]["label"] = json!({ "en": [label] });
+    }
+    manifest["items"][1]["items"][0]["items"][0]["body"] = choice;
+    let recto = &mut manifest["items"][0]["items"][0]["items"][0]["body"];
+    recto["items"][2]["label"] = json!({ "en": ["Infrared"] });
+    let (exhibit, _) = museum(&manifest).exhibit("book.json", &Known::default());
+    let sheet = &exhibit.drawings[0];
+    let overlays: Vec<_> = sheet
+        .own_overlays()
+        .map(|overlay| (overlay.id.as_str(), overlay.side))
+        .collect();
+    assert_eq!(
+        overlays,
+        [
+            ("infrared", SideName::Recto),
+            ("infrared-verso", SideName::Verso)
+        ]
+    );
+    let stacks: Vec<_> = sheet
+        .stacks
+        .iter()
+        .map(|stack| (stack.id.as_str(), stack.side, stack.bands[0].wavelength_nm))
+        .collect();
+    assert_eq!(
+        stacks,
+        [
+            ("bands", SideName::Recto, 940.0),
+            ("bands-verso", SideName::Verso, 940.0)
+        ]
+    );
+}
+
+#[test]
+fn canvases_of_one_name_are_counted_and_odd_languages_are_none() {
+    let mut manifest = foreign();
+    let label = json!({ "x-default": ["Sheet 2"] });
+    for i in 0..3 {
+        manifest["items"][i]["label"] = label.clone();
+    }
+    manifest["label"] = json!({ "x-default": ["A book"], "de": ["Ein Buch"] });
+    let (exhibit, warnings) = museum(&manifest).exhibit("book.json", &Known::default());
+    assert!(!warnings.contains("visitors cannot choose"), "{warnings}");
+    let ids: Vec<&str> = exhibit.drawings.iter().map(|d| d.id.as_str()).collect();
+    assert_eq!(ids, ["sheet-2", "sheet-2-2", "sheet-2-3"]);
+    assert_eq!(exhibit.languages, ["en", "de"]);
+    assert_eq!(exhibit.title.0["en"], "A book");
+}
+
+#[test]
+fn faults_are_in_the_order_of_the_manifest_and_counted() {
+    let mut manifest = foreign();
+    let canvas = manifest["items"][2].clone();
+    let items = manifest["items"].as_array_mut().unwrap();
+    items.clear();
+    for _ in 0..55 {
+        let mut canvas = canvas.clone();
+        canvas["width"] = json!(0);
+        items.push(canvas);
+    }
+    let words = museum(&manifest).refusal("book.json");
+    let lines: Vec<&str> = words.lines().collect();
+    assert_eq!(lines.len(), 41, "{words}");
+    for (i, line) in lines[..40].iter().enumerate() {
+        assert!(line.contains(&format!("items[{i}].width")), "{i}: {line}");
+    }
+    assert!(lines[40].contains("15 more"), "{words}");
+}
+
+#[test]
+fn what_was_killed_is_cleared_by_the_next_import_or_export() {
+    let desk = museum(&foreign());
+    // As if an export had ended after its first change of names, and an import before.
+    let left = desk.out().join(".recto-staging-abc");
+    fs::create_dir_all(&left).unwrap();
+    fs::write(left.join(".publishing"), "images\nmanifest.json").unwrap();
+    fs::write(left.join("manifest.json"), "{}").unwrap();
+    fs::create_dir(desk.out().join("images")).unwrap();
+    fs::create_dir(desk.out().join(".recto-staging-def")).unwrap();
+    desk.exhibit("book.json", &Known::default());
+    let entries = fs::read_dir(desk.out()).unwrap();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["exhibit.toml", "images"]);
+}

@@ -17,7 +17,9 @@ fn photograph(desk: &Desk, name: &str) {
     let path = desk.folder().join(name);
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     // Each is another picture.
-    let own = name.bytes().fold(0, |sum: u8, byte| sum.wrapping_mul(31).wrapping_add(byte));
+    let own = name
+        .bytes()
+        .fold(0, |sum: u8, byte| sum.wrapping_mul(31).wrapping_add(byte));
     RgbImage::from_pixel(20, 10, [120, 110, own].into())
         .save(path)
         .unwrap();
@@ -188,4 +190,71 @@ fn domes_that_do_not_fit_are_refused_in_words() {
     let (found, warnings) = capture(&desk, "cm.dome", &Known::default());
     assert!(warnings.contains("cm"), "{warnings}");
     assert!(matches!(found.lamps.places, Places::Directions(_)));
+}
+
+#[test]
+fn faults_name_the_file_that_is_imported_and_its_own_keys() {
+    let refusal = |change: &dyn Fn(&mut serde_json::Value), configuration: &str| {
+        let desk = Desk::new();
+        for i in 0..4 {
+            photograph(&desk, &format!("{i}.png"));
+        }
+        let mut dome = dome(configuration);
+        change(&mut dome);
+        desk.write("mine.dome", dome.to_string());
+        let words = desk.refusal("mine.dome");
+        assert!(
+            words.lines().all(|line| line.contains("mine.dome: "))
+                && !words.contains("capture.toml"),
+            "{words}"
+        );
+        words
+    };
+    let wide = refusal(&|v| v["imageWidth"] = json!(1e9), "directional");
+    assert!(
+        wide.contains("mine.dome: imageWidth: found 1000000000; allowed: 0.02 to 200 mm"),
+        "{wide}"
+    );
+    for width in [json!(-3), json!("wide"), json!([])] {
+        let words = refusal(&|v| v["imageWidth"] = width.clone(), "directional");
+        assert!(words.contains("mine.dome: imageWidth: found "), "{words}");
+    }
+    let low = refusal(&|v| v["directions"][1]["z"] = json!(0.001), "directional");
+    assert!(low.contains("directions[1]"), "{low}");
+    let far = refusal(&|v| v["positions3d"][2]["x"] = json!(1e7), "lights3d");
+    assert!(far.contains("positions3d[2]"), "{far}");
+    let on_it = refusal(
+        &|v| v["positionsSphere"][0]["z"] = json!(0.001),
+        "spherical",
+    );
+    assert!(on_it.contains("positionsSphere[0]"), "{on_it}");
+    // What is only found in the capture is told of the dome all the same.
+    let alike = refusal(
+        &|v| v["directions"] = json!(vec![[0.1, 0.1, 1.0]; 4]),
+        "directional",
+    );
+    assert!(
+        alike.contains("what was made of it is refused: lamps"),
+        "{alike}"
+    );
+
+    let desk = Desk::new();
+    for i in 0..4 {
+        photograph(&desk, &format!("{i}.png"));
+    }
+    desk.write("mine.dome", dome("directional").to_string());
+    let known = Known {
+        size_mm: Some([5000.0, 2500.0]),
+        ..Known::default()
+    };
+    let error = desk
+        .import_knowing("mine.dome", &known)
+        .expect_err("refused");
+    assert!(error.to_string().contains("--size-mm"), "{error}");
+    // 0 is what RelightLab writes of what it does not know.
+    let mut unknown = dome("directional");
+    unknown["imageWidth"] = json!(0);
+    desk.write("mine.dome", unknown.to_string());
+    let (found, _) = capture(&desk, "mine.dome", &Known::default());
+    assert_eq!(found.mm_per_px, 0.1);
 }

@@ -1,6 +1,8 @@
 //! Which canvases are two sides of one sheet, what it is called, how large it is, and what its
 //! pictures show.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::{Role, read::Canvas, words::Texts};
 use crate::{
     exchange::{ASSUMED_MM_PER_PX, Known, error::Faulty},
@@ -25,10 +27,40 @@ pub struct Sheet<'c, 'j> {
     verso: Option<&'c Canvas<'j>>,
 }
 
+/// Ids that differ from each other.
+#[derive(Default)]
+pub struct Ids {
+    taken: BTreeSet<String>,
+    /// Of an id that was wanted again, the last number behind it.
+    last: BTreeMap<String, usize>,
+}
+
+impl Ids {
+    /// The id itself, or with the first number behind it, from 2, with which it is free.
+    pub fn free(&mut self, wanted: &str) -> String {
+        let mut id = wanted.to_owned();
+        while !self.taken.insert(id.clone()) {
+            let last = self.last.entry(wanted.to_owned()).or_insert(1);
+            *last += 1;
+            id = with_tail(wanted, &format!("-{last}"));
+        }
+        id
+    }
+}
+
+/// An id with something behind it, cut where it would be too long.
+fn with_tail(id: &str, tail: &str) -> String {
+    const LONGEST: usize = 64;
+    let kept = id.len().min(LONGEST - tail.len());
+    // It is of ASCII alone.
+    format!("{}{tail}", id.get(..kept).unwrap_or_default())
+}
+
 /// Groups canvases in their order: a recto and the verso behind it are one sheet, and every other
 /// canvas is one of its own.
 pub fn sheets<'c, 'j>(canvases: &'c [Canvas<'j>], faulty: &mut Faulty<'_>) -> Vec<Sheet<'c, 'j>> {
     let mut sheets: Vec<Sheet<'c, 'j>> = Vec::new();
+    let mut ids = Ids::default();
     let mut rest = canvases;
     while let [recto, after @ ..] = rest {
         let own = face(recto);
@@ -47,14 +79,8 @@ pub fn sheets<'c, 'j>(canvases: &'c [Canvas<'j>], faulty: &mut Faulty<'_>) -> Ve
             Some(_) => recto.label.each(|text| without_side(text).0.to_owned()),
             None => recto.label.clone(),
         };
-        let id = name(recto, verso.is_some(), sheets.len());
-        let is_taken = |id: &str| sheets.iter().any(|sheet| sheet.id == id);
-        let id = match is_taken(&id) {
-            true => format!("sheet-{}", sheets.len() + 1),
-            false => id,
-        };
         sheets.push(Sheet {
-            id,
+            id: ids.free(&name(recto, verso.is_some(), sheets.len())),
             title,
             recto,
             verso,
@@ -148,9 +174,26 @@ fn slug(label: &str) -> Option<String> {
 }
 
 /// What a further picture of a canvas shows, by its path or else by its label; different from what
-/// `others` show.
-pub fn role<F>(path: &str, label: &Texts, others: &[F], role_of: impl Fn(&F) -> &Role) -> Role {
-    let is_new = |role: &Role| others.iter().all(|other| role_of(other) != role);
+/// the `others` of its side show, and by another name than what the recto has where it is of a
+/// verso: overlays and stacks are of one side, and their ids of a sheet.
+pub fn role(path: &str, label: &Texts, others: &[Role], recto: &[Role]) -> Role {
+    let is_new = |role: &Role| !others.contains(role);
+    let apart = |role: Role| match role {
+        Role::Overlay(id) => Role::Overlay(behind(&id, |id| {
+            recto
+                .iter()
+                .any(|role| matches!(role, Role::Overlay(own) if own == id))
+        })),
+        Role::Band(stack, nm) => {
+            let is_taken = |id: &str| {
+                recto
+                    .iter()
+                    .any(|role| matches!(role, Role::Band(own, _) if own == id))
+            };
+            Role::Band(behind(&stack, is_taken), nm)
+        }
+        role => role,
+    };
     let plain = |role: Role| match role {
         Role::Albedo => None,
         Role::State(id) => Id::from_text(&id).map(|_| Role::State(id)),
@@ -165,14 +208,26 @@ pub fn role<F>(path: &str, label: &Texts, others: &[F], role_of: impl Fn(&F) -> 
         let nm = wavelength(label)?;
         Some(Role::Band("bands".to_owned(), nm))
     });
-    if let Some(role) = by_path.or(by_label).filter(|role| is_new(role)) {
+    if let Some(role) = by_path.or(by_label).map(apart).filter(|role| is_new(role)) {
         return role;
     }
     let named = label.any().and_then(slug).map(Role::Overlay);
     let numbered = (others.len()..).map(|i| Role::Overlay(format!("picture-{i}")));
-    let mut offered = named.into_iter().chain(numbered);
+    let mut offered = named.into_iter().chain(numbered).map(apart);
     // There are more numbers than pictures.
     offered.find(is_new).unwrap_or(Role::Albedo)
+}
+
+/// An id of the verso that the recto does not take.
+fn behind(id: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    if !is_taken(id) {
+        return id.to_owned();
+    }
+    let numbered = (2..).map(|number| format!("-verso-{number}"));
+    let tails = std::iter::once("-verso".to_owned()).chain(numbered);
+    let mut ids = tails.map(|tail| with_tail(id, &tail));
+    // The recto has not all of them.
+    ids.find(|id| !is_taken(id)).unwrap_or_default()
 }
 
 /// A wavelength that a band may have, as it is written shortest.
@@ -301,5 +356,47 @@ mod tests {
         assert_eq!(measured("about a foot", [1.0, 1.0]), None);
         assert_eq!(slug("Öl & Wasser, 2").as_deref(), Some("l-wasser-2"));
         assert_eq!(slug("夢"), None);
+    }
+
+    #[test]
+    fn ids_differ() {
+        let mut ids = Ids::default();
+        let free: Vec<String> = ["sheet-2", "a", "sheet-2", "sheet-2-2", "sheet-2", "a"]
+            .map(|wanted| ids.free(wanted))
+            .to_vec();
+        let expected = [
+            "sheet-2",
+            "a",
+            "sheet-2-2",
+            "sheet-2-2-2",
+            "sheet-2-3",
+            "a-2",
+        ];
+        assert_eq!(free, expected);
+        let long = "x".repeat(64);
+        for _ in 0..20 {
+            assert!(Id::from_text(&ids.free(&long)).is_some());
+        }
+        let recto = [
+            Role::Overlay(long.clone()),
+            Role::Overlay("infrared".to_owned()),
+            Role::Overlay("infrared-verso".to_owned()),
+            Role::Band("bands".to_owned(), "940".to_owned()),
+        ];
+        let of = |path: &str| role(path, &Texts::default(), &[], &recto);
+        assert_eq!(
+            of("overlay/infrared.png"),
+            Role::Overlay("infrared-verso-2".to_owned())
+        );
+        // Another wavelength of it would be of its own side.
+        assert_eq!(
+            of("band/bands/550.png"),
+            Role::Band("bands-verso".to_owned(), "550".to_owned())
+        );
+        assert_eq!(of("state/bands.png"), Role::State("bands".to_owned()));
+        let Role::Overlay(cut) = of(&format!("overlay/{long}.png")) else {
+            panic!("no overlay");
+        };
+        assert!(cut.ends_with("-verso") && Id::from_text(&cut).is_some());
     }
 }

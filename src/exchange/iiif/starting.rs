@@ -15,13 +15,17 @@ use super::{
     IMAGES, Role,
     read::{self, Canvas, Note},
     resolve::{Beside, Unresolved},
-    sheet::{self, Sheet},
-    words::Texts,
+    sheet::{self, Ids, Sheet},
+    words::{FIRST, Texts},
 };
 use crate::{
-    exchange::{ExchangeError, Imported, Known, error::Faulty, stage},
+    exchange::{
+        ExchangeError, Imported, Known,
+        error::{Faulty, made_of},
+        stage,
+    },
     manifest::{
-        Exhibit, MANIFEST, Pattern as _, SideName, check_shape,
+        MANIFEST, Pattern as _, SideName, check_shape,
         document::Words,
         hotspot::outline_faults,
         quote,
@@ -58,16 +62,15 @@ pub(in super::super) fn import(
     }
     faulty.check()?;
     let text = text(&manifest, &drawings);
-    check_shape(&text)?;
+    check_shape(&text).map_err(|faults| made_of(file, faults))?;
     let found = stage::whole(out, &[IMAGES, MANIFEST], |folder| {
         for (from, to) in drawings.iter().flat_map(|drawing| &drawing.files) {
             copy(from, &folder.join(to))?;
         }
-        write_whole(&folder.join(MANIFEST), |file| {
-            file.write_all(text.as_bytes())
+        write_whole(&folder.join(MANIFEST), |manifest| {
+            manifest.write_all(text.as_bytes())
         })?;
-        // What is written is what `recto check` passes.
-        Ok(Exhibit::read(folder)?.1)
+        stage::checked(file, folder, out)
     })?;
     let mut warnings = faulty.warnings()?;
     warnings.extend(found);
@@ -124,8 +127,10 @@ fn drawing(
     let mut files = Vec::new();
     let mut sides = Vec::new();
     let mut header = None;
+    let mut recto = Vec::new();
     for (side, canvas) in sheet.sides() {
         let mut found = Vec::new();
+        let mut roles = Vec::new();
         let mut is_whole = true;
         for (i, picture) in canvas.pictures.iter().enumerate() {
             let (file, given) = match source.beside.find(&picture.ids) {
@@ -141,8 +146,9 @@ fn drawing(
             header.get_or_insert(probed);
             let role = match i {
                 0 => Role::Albedo,
-                _ => sheet::role(&given, &picture.label, &found, |found: &Found| &found.role),
+                _ => sheet::role(&given, &picture.label, &roles, &recto),
             };
+            roles.push(role.clone());
             let path = format!("{IMAGES}/{}/{}/{}", sheet.id, word(side), role.path());
             let path = format!("{path}.{}", extension(&file));
             files.push((file, path.clone()));
@@ -156,6 +162,7 @@ fn drawing(
         if !is_whole {
             return Ok(None);
         }
+        recto = roles;
         sides.push((side, canvas, found));
     }
     let Some(header) = header else {
@@ -237,7 +244,7 @@ impl Writer<'_> {
             return String::new();
         }
         texts.languages(self.languages);
-        format!("{key} = {}\n", texts.toml("en"))
+        format!("{key} = {}\n", texts.toml())
     }
 
     fn drawing(mut self, sides: &[Side<'_>], faulty: &mut Faulty<'_>) -> String {
@@ -269,7 +276,7 @@ impl Writer<'_> {
             text += &self.stacks(*side, found);
             text += &self.overlays(*side, found);
         }
-        let mut ids = BTreeSet::new();
+        let mut ids = Ids::default();
         for (side, canvas, _) in sides {
             for note in &canvas.notes {
                 text += &self.hotspot(*side, canvas, note, &mut ids, faulty);
@@ -355,7 +362,7 @@ impl Writer<'_> {
         side: SideName,
         canvas: &Canvas<'_>,
         note: &Note<'_>,
-        ids: &mut BTreeSet<String>,
+        ids: &mut Ids,
         faulty: &mut Faulty<'_>,
     ) -> String {
         let scale = [0, 1].map(|i| self.size_mm[i] / canvas.size[i]);
@@ -390,13 +397,8 @@ impl Writer<'_> {
             .rsplit(['/', '#'])
             .next()
             .unwrap_or_default();
-        let own = Id::from_text(last).map(|id| id.as_str().to_owned());
-        let mut id = own.unwrap_or_else(|| "hotspot".to_owned());
-        let mut number = 1;
-        while !ids.insert(id.clone()) {
-            number += 1;
-            id = format!("hotspot-{number}");
-        }
+        let own = Id::from_text(last);
+        let id = ids.free(own.as_ref().map_or("hotspot", Id::as_str));
         let places: Vec<String> = places
             .iter()
             .map(|place| format!("[{:?}, {:?}]", place.x, place.y))
@@ -429,12 +431,12 @@ fn text(manifest: &read::Manifest<'_>, drawings: &[Drawing]) -> String {
                     # check this file while you type.\n\n[exhibit]\n"
         .to_owned();
     if !manifest.label.is_empty() {
-        text += &format!("title = {}\n", manifest.label.toml("en"));
+        text += &format!("title = {}\n", manifest.label.toml());
     }
     if !languages.is_empty() {
         // The first is what is read where a text is in no other.
         let mut tags: Vec<&String> = languages.iter().collect();
-        tags.sort_by_key(|tag| *tag != "en");
+        tags.sort_by_key(|tag| *tag != FIRST);
         let tags: Vec<String> = tags.iter().map(|tag| format!("\"{tag}\"")).collect();
         text += &format!("languages = [{}]\n", tags.join(", "));
     }

@@ -4,10 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
-use crate::manifest::{Wording, normalised};
+use crate::manifest::{Pattern as _, Wording, normalised, raw::values::Language};
 
 /// The key of texts in no language.
 const NONE: &str = "none";
+/// What texts in no language are taken for where there are others.
+pub const FIRST: &str = "en";
 
 /// A language map of a wording, or of `fallback` where it has no text.
 pub fn map(wording: &Wording, fallback: &str) -> Value {
@@ -67,10 +69,11 @@ impl Texts {
     /// Adds a text in a language; a second one below the first.
     pub fn add(&mut self, tag: &str, text: &str) {
         let text = readable(text);
-        let tag = match normalised(tag) {
-            Ok(tag) if tag != NONE => tag,
-            _ => NONE.to_owned(),
-        };
+        // What a manifest refuses, such as `x-default`, is no language.
+        let known = Language::from_text(tag).and_then(|tag| normalised(tag.as_str()).ok());
+        let tag = known
+            .filter(|tag| tag != NONE)
+            .unwrap_or_else(|| NONE.to_owned());
         if text.is_empty() {
             return;
         }
@@ -103,17 +106,26 @@ impl Texts {
 
     /// Adds the languages that there are texts in.
     pub fn languages(&self, all: &mut BTreeSet<String>) {
-        all.extend(self.0.keys().filter(|tag| *tag != NONE).cloned());
+        let tags = self.0.keys().map(|tag| match tag.as_str() {
+            NONE => FIRST,
+            tag => tag,
+        });
+        all.extend(tags.filter(|_| !self.is_plain()).map(str::to_owned));
     }
 
-    /// As a manifest's value; texts in no language are in the `first`.
-    pub fn toml(&self, first: &str) -> String {
+    /// Whether there is a text in no language alone.
+    fn is_plain(&self) -> bool {
+        self.0.keys().all(|tag| tag == NONE)
+    }
+
+    /// As a manifest's value.
+    pub fn toml(&self) -> String {
         let mut texts = self.0.clone();
         if let Some(text) = texts.remove(NONE) {
             if texts.is_empty() {
                 return toml::Value::from(text).to_string();
             }
-            texts.entry(first.to_owned()).or_insert(text);
+            texts.entry(FIRST.to_owned()).or_insert(text);
         }
         let entries: Vec<String> = texts
             .into_iter()
@@ -170,14 +182,22 @@ mod tests {
         assert_eq!(texts.0["en"], "One\nTwo");
         assert_eq!(texts.0["none"], "A & B");
         assert_eq!(texts.0.len(), 2);
-        assert_eq!(
-            texts.toml("it"),
-            "{ en = \"\"\"\nOne\nTwo\"\"\", it = \"A & B\" }"
-        );
-        assert_eq!(
-            Texts::of(Some(&json!({ "x y": ["a"] }))).toml("en"),
-            "\"a\""
-        );
+        assert_eq!(texts.toml(), "{ en = \"\"\"\nOne\nTwo\"\"\" }");
+        assert_eq!(Texts::of(Some(&json!({ "x y": ["a"] }))).toml(), "\"a\"");
         assert!(Texts::of(Some(&json!(3))).is_empty());
+        for tag in [
+            "x-default",
+            "i-klingon",
+            "",
+            "e",
+            "en--US",
+            "\u{201}\u{201}",
+            "@none",
+        ] {
+            let texts = Texts::of(Some(&json!({ tag: ["a"] })));
+            let mut languages = BTreeSet::new();
+            texts.languages(&mut languages);
+            assert!(languages.is_empty() && texts.any() == Some("a"), "{tag}");
+        }
     }
 }

@@ -63,6 +63,12 @@ struct Relightable {
 
 /// The coefficients of an image, from its top.
 trait Coefficients {
+    /// Makes ready to read, with files for a while in `scratch` where they are needed.
+    fn begin(&mut self, scratch: &Path) -> Result<(), ExchangeError> {
+        let _ = scratch;
+        Ok(())
+    }
+
     /// Reads the next row into `row`: the planes of its first pixel, and so on. Luminance and
     /// colours are 1 at a display's white.
     fn next_row(&mut self, row: &mut [f64]) -> Result<(), ExchangeError>;

@@ -24,7 +24,7 @@ use super::{
 };
 use crate::{
     manifest::{document::Words, quoted_list, shape::unexplained},
-    maps::{ColourEncoding, ColourRows, MAX_SIDE},
+    maps::{self, ColourEncoding, ColourRows, MAX_SIDE},
 };
 
 /// Planes of coefficients that there may be: Relight offers some tens.
@@ -45,9 +45,7 @@ pub fn import(
     let info = Info::read(file, json, &mut faulty);
     faulty.check()?;
     let info = info.ok_or_else(|| unexplained(file, "an info.json"))?;
-    let temporary = std::env::temp_dir();
-    let scratch = tempfile::tempdir().map_err(ExchangeError::folder(&temporary))?;
-    let mut planes = Planes::open(file, &info, scratch.path(), &mut faulty)?;
+    let mut planes = Planes::find(file, &info, &mut faulty)?;
     let image = Relightable {
         size: info.size,
         planes: info.kept,
@@ -325,6 +323,8 @@ fn rows(
 
 /// The pictures of planes, three in each.
 struct Planes {
+    paths: Vec<PathBuf>,
+    /// Of these, from when on rows are read.
     pictures: Vec<ColourRows>,
     planes: Vec<Plane>,
     kept: usize,
@@ -332,13 +332,9 @@ struct Planes {
 }
 
 impl Planes {
-    fn open(
-        file: &Path,
-        info: &Info,
-        scratch: &Path,
-        faulty: &mut Faulty<'_>,
-    ) -> Result<Self, ExchangeError> {
-        let mut pictures = Vec::new();
+    /// Looks at the headers of all of them: a picture that does not belong here is not unpacked.
+    fn find(file: &Path, info: &Info, faulty: &mut Faulty<'_>) -> Result<Self, ExchangeError> {
+        let mut paths = Vec::new();
         for i in 0..info.planes.len().div_ceil(3) {
             let Some(path) = picture(file, i, info.extensions) else {
                 let found = format!("no plane_{i}.{}", info.extensions[0]);
@@ -348,9 +344,7 @@ impl Planes {
                 );
                 continue;
             };
-            // Codes as they are: coefficients are no colours.
-            let rows = ColourRows::open(&path, ColourEncoding::Linear, scratch)?;
-            let header = rows.header();
+            let header = maps::probe(&path)?;
             let size = header.size.map(|side| side as usize);
             if size != info.size || header.channels < 3 {
                 let found = format!(
@@ -364,11 +358,12 @@ impl Planes {
                 let remedy = "keep the files of one export together";
                 faulty.fault("width", Words::new(found, allowed, remedy));
             }
-            pictures.push(rows);
+            paths.push(path);
         }
         faulty.check()?;
         Ok(Self {
-            pictures,
+            paths,
+            pictures: Vec::new(),
             planes: info.planes.clone(),
             kept: info.kept,
             width: info.size[0],
@@ -401,6 +396,14 @@ fn absent(file: &Path) -> &'static str {
 }
 
 impl Coefficients for Planes {
+    fn begin(&mut self, scratch: &Path) -> Result<(), ExchangeError> {
+        // Codes as they are: coefficients are no colours.
+        let opened = self.paths.iter();
+        let opened = opened.map(|path| ColourRows::open(path, ColourEncoding::Linear, scratch));
+        self.pictures = opened.collect::<Result<_, _>>()?;
+        Ok(())
+    }
+
     fn next_row(&mut self, row: &mut [f64]) -> Result<(), ExchangeError> {
         let mut channels = [0, 1, 2].map(|_| vec![0.0; self.width]);
         for (i, picture) in self.pictures.iter_mut().enumerate() {

@@ -5,13 +5,17 @@ use std::{fs, io::Write as _, path::Path};
 use rayon::prelude::*;
 
 use super::{
-    super::{ASSUMED_MM_PER_PX, ExchangeError, Imported, Known, error::Faulty, stage},
+    super::{
+        ASSUMED_MM_PER_PX, ExchangeError, Imported, Known,
+        error::{Faulty, made_of},
+        stage,
+    },
     Coefficients, Relightable,
     solve::{Solved, Solver},
 };
 use crate::{
     colour::srgb_encode,
-    manifest::{Exhibit, MANIFEST, check_shape, document::Words},
+    manifest::{MANIFEST, check_shape, document::Words},
     maps::encode::{save_png_rgb16, write_whole},
 };
 
@@ -44,16 +48,15 @@ pub(super) fn exhibit(task: Task<'_>, out: &Path) -> Result<Imported, ExchangeEr
     let found = stage::whole(out, &[MAPS, MANIFEST], |folder| {
         let maps = folder.join(MAPS);
         fs::create_dir(&maps).map_err(ExchangeError::folder(&maps))?;
+        rows.begin(folder)?;
         let dpi = image.size[0] as f64 / (size_mm[0] / 25.4);
         let share = solve(image, rows, &maps, dpi)?;
         let text = text(file, size_mm);
-        check_shape(&text)?;
-        write_whole(&folder.join(MANIFEST), |file| {
-            file.write_all(text.as_bytes())
+        check_shape(&text).map_err(|faults| made_of(file, faults))?;
+        write_whole(&folder.join(MANIFEST), |manifest| {
+            manifest.write_all(text.as_bytes())
         })?;
-        // What is written is what `recto check` passes.
-        let (_, found) = Exhibit::read(folder)?;
-        Ok((share, found))
+        Ok((share, stage::checked(file, folder, out)?))
     });
     let (share, exhibit) = found?;
     if share > SAID {
