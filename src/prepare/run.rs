@@ -25,8 +25,7 @@ use super::{
         integrate::{Slopes, integrate_free},
         surface,
     },
-    report,
-    stage,
+    report, stage,
     stereo::{
         Gain, Response, Rig, Rows, Solver, Standing,
         left_out::{LeftOut, Relit},
