@@ -43,6 +43,18 @@ fn model(path: &Path, bytes: &[u8]) -> Result<Model, MapError> {
     if bytes.starts_with(b"glTF") && length.is_none_or(|length| u32::from_le_bytes(length) < 12) {
         return Err(MapError::damaged(path, "its header ends too early"));
     }
+    // The crate's own validation looks at arrays by numbers that it has not checked.
+    let unchecked = gltf::Gltf::from_slice_without_validation(bytes)
+        .map_err(|error| MapError::damaged(path, error))?;
+    let root = unchecked.document.as_json();
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut named = primitives.flat_map(|primitive| primitive.attributes.values());
+    if named.any(|accessor| accessor.value() >= root.accessors.len()) {
+        return Err(MapError::damaged(
+            path,
+            "a mesh names an array that is not there",
+        ));
+    }
     let gltf = gltf::Gltf::from_slice(bytes).map_err(|error| MapError::damaged(path, error))?;
     let unsupported = |found: &str| {
         MapError::unsupported(

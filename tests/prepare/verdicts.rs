@@ -217,7 +217,8 @@ fn what_the_photographs_themselves_show_is_told() {
 
 #[test]
 fn what_was_not_measured_is_neither_good_nor_doubtful() {
-    let cases: [(&dyn Fn(&mut Report), &str); 6] = [
+    type Change<'c> = &'c dyn Fn(&mut Report);
+    let cases: [(Change, &str); 6] = [
         (&|r| r.colour = None, "colour"),
         (&|r| r.sides[0].matter.materials = None, "materials"),
         (&|r| r.sides[0].relit = None, "lamps"),
