@@ -106,7 +106,8 @@ fn relief_holds_no_copies_of_a_sheet() {
         let held = held(filter).expect("told");
         assert!((11.0..15.0).contains(&held), "{filter}: {held}");
     }
-    // Two pictures of 8 bytes, where one of the slopes was that are given up.
+    // Two pictures of 8 bytes, where one of the slopes was that are given up (4), and the transforms' own tables, 2 for a
+    // picture of this size. With a copy of the slopes it was above 16.
     let held = held("integrate").expect("told");
-    assert!((7.0..14.0).contains(&held), "{held}");
+    assert!((7.0..15.5).contains(&held), "{held}");
 }
