@@ -341,10 +341,7 @@ pub fn correction(
     let fitted = correct::fit(&measured, lab, capture.illuminant.xy());
     match fitted {
         None => Err(refused(ChartError::Flat)),
-        // NaN is no colour of the chart's either.
-        Some(fitted) if fitted.off().is_nan() || fitted.off() > MOST_OFF => {
-            Err(refused(ChartError::Unlike(fitted.off())))
-        }
+        Some(fitted) if fitted.off() > MOST_OFF => Err(refused(ChartError::Unlike(fitted.off()))),
         Some(mut fitted) => {
             if matches!(rig.gain, Gain::Relative(_)) {
                 fitted.correction = fitted.correction.balanced();

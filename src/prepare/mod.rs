@@ -6,11 +6,13 @@
 //! | many photographs, a band of rows at a time | [`photographs`] |
 //! | the same made smaller, to look for things in | [`reduced`] |
 //! | whether the camera was still | [`moved`] |
+//! | whether they are black or over-exposed | [`exposed`] |
 //! | where the lamps are, and how bright | [`lights`] |
 //! | a lamp's light over the picture, from a grey card | [`flat_field`] |
 //! | a camera's colours → the sheet's | [`colour`] |
 //! | how rough paper and ink are, before stereo | [`gloss::first`] |
 //! | photographs under lamps → albedo and normals | [`stereo`] |
+//! | whether lamps are a quarter of a turn away | [`turned`] |
 //! | normals → the sheet's shape and its grain, in mm | [`relief`] |
 //! | the paper that maps are shown by, for fits that undo it | [`model`] |
 //! | swatches → what each place is drawn with | [`materials`] |

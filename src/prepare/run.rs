@@ -248,8 +248,10 @@ fn staged(
         texts.push(text);
         reports.push(report);
     }
-    tell("placing the verso", 0.95);
     let verso = capture.verso.as_ref();
+    if verso.is_some() {
+        tell("placing the verso", 0.95);
+    }
     let placed = verso.map(|_| verso::place(scratch, capture.mm_per_px));
     let placed = placed.transpose()?;
     let report = Report {

@@ -170,7 +170,7 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    /// Mean ΔE00 of left-out patches, of the model that does better.
+    /// Mean ΔE00 of left-out patches, of the model that does better; infinite where it is no number.
     pub fn off(&self) -> f64 {
         let each = self.left_out.iter().map(|(_, off)| *off);
         each.fold(f64::INFINITY, f64::min)
