@@ -482,4 +482,18 @@ mod tests {
         }
         assert!(of("iron-gall-ink", 0.05).3 > 5.0 * of("iron-gall-ink", 0.5).3);
     }
+
+    #[test]
+    fn a_sheet_of_no_depth_passes_what_both_its_surfaces_do() {
+        let laid = "laid".parse::<MediumId>().expect("laid paper");
+        let mut specimen = Specimen::new(laid.medium(), DVec3::splat(0.8));
+        specimen.study.through.ballistic = DVec3::ZERO;
+        for theta in [0.0, 40.0, 80.0] {
+            let straight = Pair([theta, 0.0, 180.0 - theta, 180.0]);
+            let passed = specimen.at(Tier::Study, &straight).ballistic.x;
+            let mu = theta.to_radians().cos();
+            let t = specimen.interface.at(mu, specimen.surface.alpha).t;
+            assert!((passed / (t * t) - 1.0).abs() < 1e-9, "{theta}: {passed}");
+        }
+    }
 }

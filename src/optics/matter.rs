@@ -467,6 +467,106 @@ fn layer_photographed(tau: f64, r_b: f64, below: f64) -> Body {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::{
+        bsdf::Specimen,
+        medium::{Matter, MediumId},
+    };
+
+    /// Laid paper under reproduction light, and its means.
+    fn laid() -> (Specimen, InterfaceMean) {
+        let id = "laid".parse::<MediumId>().expect("laid paper");
+        let laid = Specimen::new(id.medium(), DVec3::new(0.8, 0.7, 0.5));
+        let mean = laid.interface.mean_at(laid.surface.alpha);
+        (laid, mean)
+    }
+
+    #[test]
+    fn films_of_the_papers_index_change_nothing_of_it() {
+        let (paper, mean) = laid();
+        let media = Media::new(&SideMedia::default(), &paper.surface, &mean, &paper.study);
+        for reflects in [media.film_reflects, media.body_reflects] {
+            assert!((reflects - 1.0).abs() < 1e-9, "{reflects}");
+        }
+        assert!((media.film_gain - 1.0).abs().max_element() < 1e-9);
+        // A film that water would be reflects less.
+        let water = Media {
+            film_eta: 1.33,
+            ..media.clone()
+        };
+        let alone = mean_under(&paper.surface, water.film_eta);
+        assert!(1.0 - alone.t_mean < 0.9 * (1.0 - mean.t_mean));
+    }
+
+    #[test]
+    fn a_backed_sheet_is_the_sum_of_all_passes() {
+        let (paper, mean) = laid();
+        let r_i = internal(&mean, paper.surface.eta);
+        let (r, t) = (
+            paper.study.through.reflected,
+            paper.study.through.transmitted,
+        );
+        // Through, back at the boundary, and so often within as light is left.
+        let mut sum = r;
+        let mut within = t * r_i;
+        for _ in 0..200 {
+            sum += within * t;
+            within *= r * r_i;
+        }
+        let found = backed(&paper.study, r_i);
+        assert!((found - sum).abs().max_element() < 1e-12, "{found} {sum}");
+    }
+
+    #[test]
+    fn a_surface_of_hardly_another_index_sends_hardly_anything_back() {
+        let mean = InterfaceMean {
+            t_mean: 1.0,
+            ..InterfaceMean::default()
+        };
+        // 1 − 1/n²; what passes a boundary of no index is all, whatever rounding says.
+        assert!((internal(&mean, 1.02) - 0.0404 / 1.0404).abs() < 1e-12);
+        assert_eq!(internal(&mean, 1.0), 0.0);
+    }
+
+    #[test]
+    fn particles_are_no_rougher_than_facets_can_be() {
+        let Matter::Particles(constants) = "silver-point"
+            .parse::<MediumId>()
+            .expect("silver point")
+            .medium()
+            .matter
+        else {
+            panic!("silver point is not made of particles");
+        };
+        let rough = ParticleConstants {
+            roughness: 1.5,
+            ..constants
+        };
+        assert_eq!(Particle::new(&rough).alpha, 1.0);
+        assert!((CAPTURE_SIN2_H - FRAC_PI_8.sin().powi(2)).abs() < 1e-15);
+    }
+
+    /// A photograph is divided by it.
+    #[test]
+    fn the_blackest_paint_still_reflects_a_thousandth() {
+        let (paper, mean) = laid();
+        let id = "white-gouache".parse::<MediumId>().expect("white gouache");
+        let Matter::Body(white) = id.medium().matter else {
+            panic!("white gouache is no body colour");
+        };
+        let body = |albedo: [f64; 3]| {
+            let side = SideMedia {
+                bodies: vec![BodyConstants { albedo, ..white }],
+                ..SideMedia::default()
+            };
+            Media::new(&side, &paper.surface, &mean, &paper.study)
+        };
+        let black = body([0.0; 3]);
+        assert_eq!(black.body_albedo, DVec3::splat(1e-3));
+        // And lets through less than white.
+        let white = body(white.albedo);
+        assert!(black.body_through.cmplt(white.body_through).all());
+        assert!(black.body_through.min_element() >= 0.0);
+    }
 
     /// Kubelka 1948: R = sinh bS/(a sinh bS + b cosh bS), T = b over the same.
     #[test]

@@ -376,3 +376,71 @@ pub fn split_even(split: &Split, m_o: f64, depth: DVec3) -> DVec3 {
     let slanted = split.inner_mean - m_o;
     (1.0 + split.leaning * slanted + split.alike * alike).max(DVec3::ZERO) * split.at_capture
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::{bsdf::Specimen, medium::MediumId};
+
+    #[test]
+    fn light_leaves_as_steeply_as_the_walks_found() {
+        for (g, walked) in [(0.0, 0.24), (1.0 / 3.0, 0.44), (0.7, 0.85)] {
+            assert!((alike(g) - walked).abs() < 0.01, "{g}: {}", alike(g));
+        }
+    }
+
+    /// The polynomial's nodes are seven directions, turned sixteen times; here are many more.
+    #[test]
+    fn the_mean_of_a_single_scatter_is_its_integral() {
+        const WITHIN: f64 = 1e-3;
+        const STEPS: u32 = 64;
+        let laid = "laid".parse::<MediumId>().expect("laid paper");
+        let Specimen {
+            surface,
+            interface,
+            study: Study { split, .. },
+            ..
+        } = Specimen::new(laid.medium(), DVec3::splat(0.8));
+        let directions: Vec<[f64; 2]> = (0..STEPS)
+            .map(|i| {
+                let mu = ((f64::from(i) + 0.5) / f64::from(STEPS)).sqrt();
+                [mu, interface.at(mu, surface.alpha).t]
+            })
+            .collect();
+        let all: f64 = directions.iter().map(|[_, t]| t).sum();
+        let scattered = |mu_i: f64, mu_o: f64, phi: f64| {
+            let sines = ((1.0 - mu_i * mu_i) * (1.0 - mu_o * mu_o)).sqrt();
+            let l_dot_v = mu_i * mu_o + sines * phi.cos();
+            let g = Facing {
+                mu_i,
+                mu_o,
+                cos_d: (0.5 + 0.5 * l_dot_v).sqrt(),
+                sin2_h: 0.0,
+            };
+            let [inner_i, inner_o] = [mu_i, mu_o].map(|mu| inner_cosine(mu, surface.eta));
+            single_scatter(&split, surface.eta, &g, inner_i, inner_o)
+        };
+        let over_all = |mu_i: f64| {
+            let around = |mu_o: f64| {
+                let turns = (0..STEPS).map(|turn| PI * (f64::from(turn) + 0.5) / f64::from(STEPS));
+                turns.map(|phi| scattered(mu_i, mu_o, phi)).sum::<f64>() / f64::from(STEPS)
+            };
+            let weighted = directions.iter().map(|[mu, t]| t * around(*mu));
+            weighted.sum::<f64>() / all
+        };
+        for mu in [0.1, 0.3, 0.6, 0.9, 1.0] {
+            let [found, exact] = [split_mean(&split, mu), over_all(mu)];
+            assert!(
+                (found / exact - 1.0).abs() < WITHIN,
+                "{mu}: {found} {exact}"
+            );
+        }
+        let exact: f64 = directions.iter().map(|[mu, t]| t * over_all(*mu)).sum();
+        let exact = exact / all;
+        assert!(
+            (split.mean / exact - 1.0).abs() < WITHIN,
+            "{} {exact}",
+            split.mean
+        );
+    }
+}

@@ -249,8 +249,10 @@ fn days_go_by_and_it_is_as_it_was() {
         entities(held.last()) <= entities(held.first()) + MORE,
         "{held:?}"
     );
+    // Fewer are there where nothing was open last.
     for later in &held[3.min(held.len())..] {
-        assert_eq!(later, &held[2], "more is held each day");
+        let more = later.iter().zip(&held[2]).any(|(later, then)| later > then);
+        assert!(!more, "more is held each day: {held:?}");
     }
     let Week {
         session, visits, ..

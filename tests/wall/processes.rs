@@ -4,6 +4,7 @@ use std::{
     fs,
     io::{Read, Write},
     net::TcpStream,
+    path::Path,
     thread,
     time::{Duration, Instant},
 };
@@ -12,12 +13,13 @@ use nix::{
     sys::signal::{Signal, kill},
     unistd::Pid,
 };
+use recto::wall::journal::CURRENT;
 use serde_json::{Value, json};
 
 use super::{
     recto,
     screen::{self, Running, Screen},
-    together::{MANIFEST, PATIENCE, Place},
+    together::{self, MANIFEST, PATIENCE, Place},
 };
 
 /// Of 255, on average: what is seen to be another picture.
@@ -156,4 +158,67 @@ fn processes_on_loopback_are_stopped_and_killed_and_go_on() {
     width(120);
     until("and goes on", || shown() > begun);
     drop((leader, follower));
+}
+
+/// The process that a supervisor began last, which is its only one.
+fn window_of(supervisor: &Running) -> Option<Pid> {
+    let id = supervisor.0.id();
+    let children = fs::read_to_string(format!("/proc/{id}/task/{id}/children")).ok()?;
+    children.trim().parse().ok().map(Pid::from_raw)
+}
+
+/// What a window's log says, but for a line that is being written.
+fn lines(log: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(log).unwrap_or_default();
+    let lines = text.lines();
+    lines.flat_map(serde_json::from_str).collect()
+}
+
+#[test]
+fn a_killed_window_is_begun_anew_and_its_log_says_why_and_how_it_ended() {
+    if screen::is_skipped() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("installation.toml");
+    together::write_exhibit(&folder.path().join("exhibit"), MANIFEST);
+    let text = "[exhibits]\nfolders = [\"exhibit\"]\n[logs]\nfolder = \"logs\"\n\
+                [status]\naddress = \"off\"\n\
+                [[display]]\nid = \"only\"\npixels = [320, 240]\nsize_mm = [320, 240]\n";
+    fs::write(&file, text).unwrap();
+    let screen = Screen::new([320, 240]);
+    let mut command = recto();
+    command
+        .args(["supervise", "--", "--tier", "draft", "--installation"])
+        .arg(&file)
+        .env("DISPLAY", &screen.display)
+        .env("XDG_RUNTIME_DIR", folder.path())
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("NOTIFY_SOCKET")
+        .env_remove("WATCHDOG_USEC")
+        .stderr(fs::File::create(folder.path().join("stderr")).unwrap());
+    let mut supervisor = Running(command.spawn().unwrap());
+    let log = folder.path().join("logs").join(CURRENT);
+    let said = |what: &str, field: &str, part: &str| {
+        lines(&log).iter().any(|line| {
+            line["what"] == what && line[field].as_str().is_some_and(|text| text.contains(part))
+        })
+    };
+    let version = env!("CARGO_PKG_VERSION");
+
+    until("it has a picture", || screen.light() > OTHER);
+    assert!(said("started", "version", version));
+    assert!(!said("started anew", "version", version));
+    let first = window_of(&supervisor).expect("a window");
+    kill(first, Signal::SIGKILL).unwrap();
+    until("the next one says why it was begun", || {
+        said("started anew", "the last one", "SIGKILL")
+    });
+    until("it has its picture back", || screen.light() > OTHER);
+    assert_ne!(window_of(&supervisor), Some(first));
+
+    signal(&supervisor, Signal::SIGTERM);
+    until("it says how it ended", || said("ends", "signal", "SIGTERM"));
+    assert!(supervisor.0.wait().unwrap().success());
+    assert_eq!(window_of(&supervisor), None);
 }

@@ -92,7 +92,7 @@ camera = { centre_mm = [100, 80], width_mm = 60 }
 "#;
 
 /// An exhibit that differs from place to place of the sheet.
-fn write_exhibit(folder: &Path, manifest: &str) {
+pub fn write_exhibit(folder: &Path, manifest: &str) {
     const SIDE: u32 = 64;
     fs::create_dir_all(folder).unwrap();
     let grey = |k: u32, of: u32| (k * 255 / of) as u8;
