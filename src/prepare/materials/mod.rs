@@ -7,12 +7,14 @@
 //! | a small network, by Levenberg and Marquardt's method | [`network`] |
 //! | what it has to beat: a linear discriminant | [`discriminant`] |
 //! | which of them does better, and how often each class is met | [`ways`] |
+//! | places that two materials share | [`edges`] |
 //! | what is taken for what | [`confusion`] |
 //! | classes → a picture with a legend | [`legend`] |
 
 pub mod blocks;
 pub mod confusion;
 pub mod discriminant;
+pub mod edges;
 pub mod features;
 pub mod legend;
 pub mod network;
@@ -39,6 +41,12 @@ const JUDGED: usize = 2000;
 const PAPER: [f64; 2] = [0.6, 0.9];
 /// How much farther from its class than nearly all of its swatch a place is unlike it, in squares.
 const UNLIKE: f64 = 2.0;
+
+/// By how much better places are told with their surroundings if these are to be seen. What a way is chosen by
+/// are parts of the swatches that it has learnt from other parts of, and a few swatches say little: surroundings
+/// that come with the places where they happen to lie are not those of the sheet. On the sample, with swatches of
+/// 400 pixels, seeing them does better by .010 and .023 there, and takes a fifth of the sheet for what it is not.
+const BETTER: f64 = 0.05;
 
 /// How a way did.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,49 +137,58 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
         })
         .collect();
     let trials: Vec<Trial> = judged.iter().map(|(trial, _)| trial.clone()).collect();
-    // Of equals the simpler.
-    let best = judged
-        .into_iter()
-        .reduce(|best, next| match next.0.choosing > best.0.choosing {
-            true => next,
-            false => best,
-        });
-    let (_, mut chosen) = best?;
+    let best = best_of(trials.iter().map(|trial| (trial.way, trial.choosing)))?;
+    let (_, mut chosen) = judged.into_iter().nth(best)?;
     chosen.meet(&everywhere(seen), &learnt);
     let width = seen.width.max(1);
     let mut classes = vec![0u8; seen.albedo.len()];
-    let counts: Vec<Vec<u64>> = classes
-        .par_chunks_mut(width)
-        .enumerate()
-        .map(|(y, row)| {
-            // The last is of places like no swatch.
-            let mut counts = vec![0u64; media.len() + 1];
-            for (x, out) in row.iter_mut().enumerate() {
-                let features = seen.at(x, y);
-                let class = chosen.class(&features);
-                counts[class] += 1;
-                if discriminant.distance(&features, class) > limits[class] {
-                    counts[media.len()] += 1;
-                }
-                *out = class as u8;
-            }
-            counts
-        })
-        .collect();
-    let share = |i: usize| {
-        let count: u64 = counts.iter().map(|row| row[i]).sum();
-        count as f64 / classes.len().max(1) as f64
-    };
+    let mut far = vec![false; classes.len()];
+    let rows = classes.par_chunks_mut(width).zip(far.par_chunks_mut(width));
+    rows.enumerate().for_each(|(y, (row, far))| {
+        for (x, (class, far)) in row.iter_mut().zip(far).enumerate() {
+            let features = seen.at(x, y);
+            let found = chosen.class(&features);
+            *far = discriminant.distance(&features, found) > limits[found];
+            *class = found as u8;
+        }
+    });
+    let settled = edges::settle(seen, &classes);
+    let all = classes.len().max(1) as f64;
+    // What is like no swatch as it is a little of two is known.
+    let places = far.iter().zip(classes.iter().zip(&settled));
+    let unlike = places.filter(|(far, (by_itself, settled))| **far && by_itself == settled);
+    let unlike = unlike.count() as f64 / all;
+    let mut counts = vec![0u64; media.len()];
+    for class in &settled {
+        counts[usize::from(*class)] += 1;
+    }
     let materials = Materials {
-        coverage: (0..media.len()).map(share).collect(),
-        unlike: share(media.len()),
+        coverage: counts.into_iter().map(|count| count as f64 / all).collect(),
+        unlike,
         media,
         paper_shown,
         learnt,
         trials,
         chosen: chosen.way,
     };
-    Some((classes, materials))
+    Some((settled, materials))
+}
+
+/// Which of these ways, the simpler ones first, is to be taken by how it did.
+fn best_of(did: impl Iterator<Item = (Way, f64)>) -> Option<usize> {
+    let worth = |(way, share): (Way, f64)| match way.surroundings {
+        true => share - BETTER,
+        false => share,
+    };
+    // Of equals the first.
+    let best = did
+        .map(worth)
+        .enumerate()
+        .reduce(|best, next| match next.1 > best.1 {
+            true => next,
+            false => best,
+        });
+    best.map(|(index, _)| index)
 }
 
 /// What is seen of the whole side, at as many places as are needed.
@@ -277,4 +294,20 @@ impl Places {
 fn every(pixels: usize) -> usize {
     const MOST: usize = 40_000;
     ((pixels as f64 / MOST as f64).sqrt().ceil() as usize).max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surroundings_are_seen_where_they_help_clearly() {
+        let chosen = |did: [f64; 4]| best_of(Way::ALL.into_iter().zip(did));
+        assert_eq!(chosen([0.81, 0.76, 0.985, 0.9955]), Some(2));
+        assert_eq!(chosen([0.81, 0.93, 0.96, 0.985]), Some(2));
+        assert_eq!(chosen([0.81, 0.70, 0.82, 0.985]), Some(3));
+        assert_eq!(chosen([0.5, 0.9, 0.6, 0.9]), Some(1));
+        assert_eq!(chosen([1.0; 4]), Some(0));
+        assert_eq!(best_of(std::iter::empty()), None);
+    }
 }
