@@ -4,6 +4,8 @@
 mod bsdf;
 #[path = "cli/commands.rs"]
 mod commands;
+#[path = "cli/drawn.rs"]
+mod drawn;
 #[path = "cli/figure.rs"]
 mod figure;
 #[path = "cli/masks.rs"]

@@ -8,7 +8,7 @@ use recto::{
         materials::{
             Materials, Trial,
             confusion::Confusion,
-            ways::{Method, Way},
+            ways::{Method, Surroundings, Way},
         },
         matter::MatterReport,
         moved::Stillness,
@@ -23,7 +23,7 @@ use super::reported::{fitted, lamps, left_over, photographs};
 fn materials() -> Materials {
     let way = Way {
         method: Method::Discriminant,
-        surroundings: false,
+        surroundings: Surroundings::Nothing,
     };
     Materials {
         media: vec![None, "wash".parse().ok()],

@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use super::features::Seen;
 use crate::colour::{luminance, srgb_decode};
 
-/// The share of a place that a medium covers from which on it is drawn there. Less than half: a place that is
-/// taken for a thin film of ink is shown as it is, one that is taken for dark paper is not under other light.
-const DRAWN: f32 = 0.4;
+/// The share of a place that a medium covers from which on it is drawn there. A little less than half: what is
+/// taken for a thin film of ink is shown as it is, what is taken for dark paper is not under other light.
+const DRAWN: f32 = 0.45;
 /// Of the lightest neighbour's light: less of a difference is the unevenness of one material.
 const CONTRAST: f32 = 0.1;
 /// Rows of which the light is known at a time.

@@ -6,15 +6,21 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::prepare::{
-    photographs::Band,
-    stereo::{Rig, Solved},
+use crate::{
+    colour::{srgb_decode, srgb_encode},
+    prepare::{
+        photographs::Band,
+        stereo::{Rig, Solved},
+    },
 };
 
 /// How many features a place has.
-pub const FEATURES: usize = 7;
-/// So many of them are a place's own; the others tell of its surroundings.
+pub const FEATURES: usize = 8;
+/// So many of them are a place's own; the others tell of its surroundings: their relief, and then more.
 pub const OWN: usize = 5;
+pub const WITH_RELIEF: usize = 7;
+/// The first ones are colours, sRGB-encoded.
+const COLOURS: usize = 3;
 /// How far in pixels a feature looks around.
 pub const REACH: usize = 2;
 /// Names of the features, in their order.
@@ -25,6 +31,7 @@ pub const NAMES: [&str; FEATURES] = [
     "gloss towards the mirror's angle",
     "what the photographs leave over",
     "unevenness of the relief",
+    "hollowness of the relief",
     "unevenness of the colour",
 ];
 
@@ -123,6 +130,19 @@ fn read_row(band: &Band, solved: &Solved, rig: &Rig, row: usize, out: &mut [[u8;
     }
 }
 
+/// What is seen of a place of which a medium covers `share` and bare paper the rest.
+pub fn mixed(medium: &Features, paper: &Features, share: f32) -> Features {
+    let between = |a: f32, b: f32| share * a + (1.0 - share) * b;
+    let in_light = |a: f32, b: f32| {
+        let [a, b] = [a, b].map(|v| srgb_decode(f64::from(v)) as f32);
+        srgb_encode(f64::from(between(a, b))) as f32
+    };
+    std::array::from_fn(|k| match k < COLOURS {
+        true => in_light(medium[k], paper[k]),
+        false => between(medium[k], paper[k]),
+    })
+}
+
 /// The maps that features are read from.
 #[derive(Clone, Copy)]
 pub struct Seen<'m> {
@@ -146,9 +166,11 @@ impl Seen<'_> {
         let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(self.height());
         let columns = x.saturating_sub(REACH)..(x + REACH + 1).min(self.width);
         let (mut sums, mut squares, mut count) = ([0.0f32; 3], [0.0f32; 3], 0.0f32);
+        let mut hollow = 0.0f32;
         for row in rows {
             let line = row * self.width;
-            for i in line + columns.start..line + columns.end {
+            for column in columns.clone() {
+                let i = line + column;
                 let [nx, ny, nz] = self.normals[i];
                 let up = 1.0 / nz.max(0.1);
                 let values = [nx * up, ny * up, f32::from(self.albedo[i][1]) / 65535.0];
@@ -157,8 +179,23 @@ impl Seen<'_> {
                     *square += value * value;
                 }
                 count += 1.0;
+                // How slopes rise along x and along y, the mean of three central differences in each of three
+                // rows. Normals point up the picture where rows go down it.
+                let (right, down) = (column as f32 - x as f32, row as f32 - y as f32);
+                if down.abs() <= 1.0 && right != 0.0 {
+                    hollow -= right.signum() * values[0];
+                }
+                if right.abs() <= 1.0 && down != 0.0 {
+                    hollow += down.signum() * values[1];
+                }
             }
         }
+        // At the picture's edge one side is missing.
+        let whole = (2 * REACH + 1) * (2 * REACH + 1);
+        let hollow = match count as usize == whole {
+            true => hollow / 18.0,
+            false => 0.0,
+        };
         let variance = |c: usize| (squares[c] / count - (sums[c] / count).powi(2)).max(0.0);
         let uneven = |variance: f32| (1.0 + variance.sqrt() / EVEN).ln();
         [
@@ -168,6 +205,7 @@ impl Seen<'_> {
             mirror,
             left,
             uneven(variance(0) + variance(1)),
+            hollow.signum() * (1.0 + hollow.abs() / EVEN).ln(),
             uneven(variance(2)),
         ]
     }
@@ -187,5 +225,50 @@ mod tests {
             "{codes:?}"
         );
         assert_eq!(code(f32::NAN), 0);
+    }
+
+    #[test]
+    fn a_groove_is_hollow_and_a_ridge_is_not_whichever_way_it_runs() {
+        const SIZE: usize = 13;
+        /// Of their sides.
+        const SLOPE: f32 = 0.2;
+        let seen_of = |across: bool, height: f32| {
+            let normals: Vec<[f32; 3]> = (0..SIZE * SIZE)
+                .map(|i| {
+                    let off = |place: usize| {
+                        (place as f32 - 6.0).signum() * f32::from(u8::from(place != 6))
+                    };
+                    // Rises away from the middle, where `height` is 1; y points up the picture.
+                    let rise = height * SLOPE;
+                    let (x, y) = match across {
+                        false => (-rise * off(i % SIZE), 0.0),
+                        true => (0.0, rise * off(i / SIZE)),
+                    };
+                    let length = (x * x + y * y + 1.0).sqrt();
+                    [x / length, y / length, 1.0 / length]
+                })
+                .collect();
+            let albedo = vec![[40_000; 3]; SIZE * SIZE];
+            let gloss = Gloss {
+                codes: vec![[128, 0]; SIZE * SIZE],
+            };
+            let seen = Seen {
+                width: SIZE,
+                albedo: &albedo,
+                normals: &normals,
+                gloss: &gloss,
+            };
+            [seen.at(6, 6), seen.at(3, 3)].map(|features| features[OWN + 1])
+        };
+        // The mean of central differences over three places: both sides count twice of three.
+        let curved = 2.0 * SLOPE / 3.0;
+        let told = (1.0 + curved / EVEN).ln();
+        for across in [false, true] {
+            let [groove, beside] = seen_of(across, 1.0);
+            assert!((groove - told).abs() < 0.01, "{groove} {told}");
+            assert!(beside.abs() < 1e-3, "{beside}");
+            let [ridge, _] = seen_of(across, -1.0);
+            assert!((ridge + told).abs() < 0.01, "{ridge}");
+        }
     }
 }

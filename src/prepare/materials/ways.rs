@@ -9,7 +9,7 @@ use std::fmt;
 use super::{
     confusion::Confusion,
     discriminant::Discriminant,
-    features::{Features, OWN},
+    features::{FEATURES, Features, OWN, WITH_RELIEF},
     network::Network,
 };
 
@@ -34,21 +34,32 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Way {
     pub method: Method,
-    /// Whether it sees how uneven a place's surroundings are: chalk is told by that, and a thin pen stroke,
-    /// whose surroundings are its neighbours', is told better without.
-    pub surroundings: bool,
+    pub surroundings: Surroundings,
+}
+
+/// What is seen of a place's surroundings. A thin pen stroke, whose surroundings are its neighbours', is told better
+/// without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Surroundings {
+    Nothing,
+    /// How uneven and how hollow it is: a groove is told by that.
+    Relief,
+    /// How uneven its colour is as well: chalk is told by that.
+    All,
 }
 
 impl Way {
     /// The simpler ones first.
-    pub const ALL: [Self; 4] = [
-        Self::new(Method::Discriminant, false),
-        Self::new(Method::Discriminant, true),
-        Self::new(Method::Network, false),
-        Self::new(Method::Network, true),
+    pub const ALL: [Self; 6] = [
+        Self::new(Method::Discriminant, Surroundings::Nothing),
+        Self::new(Method::Discriminant, Surroundings::Relief),
+        Self::new(Method::Discriminant, Surroundings::All),
+        Self::new(Method::Network, Surroundings::Nothing),
+        Self::new(Method::Network, Surroundings::Relief),
+        Self::new(Method::Network, Surroundings::All),
     ];
 
-    const fn new(method: Method, surroundings: bool) -> Self {
+    const fn new(method: Method, surroundings: Surroundings) -> Self {
         Self {
             method,
             surroundings,
@@ -58,9 +69,12 @@ impl Way {
     /// What it sees of a place.
     pub fn sees(self, features: &Features) -> Features {
         let mut seen = *features;
-        if !self.surroundings {
-            seen[OWN..].fill(0.0);
-        }
+        let first_unseen = match self.surroundings {
+            Surroundings::Nothing => OWN,
+            Surroundings::Relief => WITH_RELIEF,
+            Surroundings::All => FEATURES,
+        };
+        seen[first_unseen..].fill(0.0);
         seen
     }
 }
@@ -72,8 +86,9 @@ impl fmt::Display for Way {
             Method::Network => "network",
         })?;
         f.write_str(match self.surroundings {
-            true => ", surroundings seen",
-            false => ", each place by itself",
+            Surroundings::Nothing => ", each place by itself",
+            Surroundings::Relief => ", relief around it seen",
+            Surroundings::All => ", surroundings seen",
         })
     }
 }
@@ -226,7 +241,7 @@ mod tests {
     fn a_rare_class_is_not_seen_everywhere() {
         let learning = places([500, 500], 1);
         let sheet = places([9700, 300], 2);
-        let way = Way::new(Method::Network, true);
+        let way = Way::new(Method::Network, Surroundings::All);
         let mut network = Classifier::fit(way, &learning, &[], 2).expect("a network");
         let wrong = |network: &Classifier| {
             let off = sheet.iter().filter(|(f, is)| network.class(f) != *is);
@@ -266,12 +281,12 @@ mod tests {
         };
         let learning = apart([0.0, 1.0]);
         let elsewhere = apart([1.0, 0.0]);
-        let right = |surroundings| {
+        let right = |surroundings: Surroundings| {
             let way = Way::new(Method::Network, surroundings);
             let network = Classifier::fit(way, &learning, &learning, 2).expect("a network");
             network.judged(&elsewhere).accuracy()
         };
-        assert_eq!(right(false), 1.0);
-        assert!(right(true) < 1.0, "the case that must fail");
+        assert_eq!(right(Surroundings::Nothing), 1.0);
+        assert!(right(Surroundings::Relief) < 1.0, "the case that must fail");
     }
 }
