@@ -489,12 +489,16 @@ mod tests {
         }
         assert!((media.film_gain - 1.0).abs().max_element() < 1e-9);
         // A film that water would be reflects less.
-        let water = Media {
-            film_eta: 1.33,
-            ..media.clone()
+        let water = SideMedia {
+            films: vec![FilmConstants {
+                index: 1.33,
+                roughness: paper.surface.alpha,
+                depth: [0.1; 3],
+            }],
+            ..SideMedia::default()
         };
-        let alone = mean_under(&paper.surface, water.film_eta);
-        assert!(1.0 - alone.t_mean < 0.9 * (1.0 - mean.t_mean));
+        let wet = Media::new(&water, &paper.surface, &mean, &paper.study);
+        assert!(wet.film_reflects < 0.9, "{}", wet.film_reflects);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use std::{
 };
 
 use nix::{
+    errno::Errno,
     sys::signal::{Signal, kill},
     unistd::Pid,
 };
@@ -207,7 +208,7 @@ fn a_killed_window_is_begun_anew_and_its_log_says_why_and_how_it_ended() {
     let version = env!("CARGO_PKG_VERSION");
 
     until("it has a picture", || screen.light() > OTHER);
-    assert!(said("started", "version", version));
+    until("its log says so", || said("started", "version", version));
     assert!(!said("started anew", "version", version));
     let first = window_of(&supervisor).expect("a window");
     kill(first, Signal::SIGKILL).unwrap();
@@ -215,10 +216,23 @@ fn a_killed_window_is_begun_anew_and_its_log_says_why_and_how_it_ended() {
         said("started anew", "the last one", "SIGKILL")
     });
     until("it has its picture back", || screen.light() > OTHER);
-    assert_ne!(window_of(&supervisor), Some(first));
+    let second = window_of(&supervisor).expect("the next window");
+    assert_ne!(second, first);
 
     signal(&supervisor, Signal::SIGTERM);
     until("it says how it ended", || said("ends", "signal", "SIGTERM"));
-    assert!(supervisor.0.wait().unwrap().success());
-    assert_eq!(window_of(&supervisor), None);
+    let begun = Instant::now();
+    let status = loop {
+        if let Some(status) = supervisor.0.try_wait().unwrap() {
+            break status;
+        }
+        assert!(begun.elapsed() < PATIENCE, "the supervisor ends: never");
+        thread::sleep(Duration::from_millis(20));
+    };
+    assert!(status.success(), "{status}");
+    assert_eq!(
+        kill(second, None),
+        Err(Errno::ESRCH),
+        "the window has ended"
+    );
 }

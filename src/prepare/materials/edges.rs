@@ -2,8 +2,9 @@
 //!
 //! Where a stroke ends, a pixel shows some of it and some of what lies beside it: half ink and half paper look
 //! like pale ink, wash or lead point. Swatches are of one material throughout and do not say so. A place between
-//! the lightest and the darkest of its neighbours, which are of two classes, therefore is of one of these, by the
-//! share that it has of their difference in light.
+//! the lightest and the darkest of its neighbours, which are of two classes, therefore is given to one of these, by the
+//! share that it has of their difference in light. That holds for edges about a pixel wide. Lead point that is no wider
+//! is lost right beside ink.
 
 use rayon::prelude::*;
 
@@ -15,20 +16,21 @@ use crate::colour::{luminance, srgb_decode};
 const DRAWN: f32 = 0.45;
 /// Of the lightest neighbour's light: less of a difference is the unevenness of one material.
 const CONTRAST: f32 = 0.1;
-/// Rows of which the light is known at a time.
+/// Rows that are settled at a time.
 const ROWS: usize = 64;
 
-/// `classes` once the places that two of them share are given to one; the first class is bare paper.
-pub fn settle(seen: &Seen<'_>, classes: &[u8]) -> Vec<u8> {
+/// Gives places that two of the `classes` share to one, in `settled`, which holds the same before; these are `far` from
+/// no class any more. The first class is bare paper.
+pub fn settle(seen: &Seen<'_>, classes: &[u8], settled: &mut [u8], far: &mut [bool]) {
     let (width, height) = (seen.width.max(1), seen.height());
-    let mut settled = classes.to_vec();
     settled
         .par_chunks_mut(ROWS * width)
+        .zip(far.par_chunks_mut(ROWS * width))
         .enumerate()
-        .for_each(|(chunk, out)| {
+        .for_each(|(chunk, (out, far))| {
             let top = (chunk * ROWS).saturating_sub(1);
             let bottom = (chunk * ROWS + out.len() / width + 1).min(height);
-            let light: Vec<f32> = seen.albedo[top * width..bottom * width]
+            let luminance: Vec<f32> = seen.albedo[top * width..bottom * width]
                 .iter()
                 .map(|rgb| {
                     let linear = rgb.map(|v| srgb_decode(f64::from(v) / 65535.0));
@@ -37,57 +39,56 @@ pub fn settle(seen: &Seen<'_>, classes: &[u8]) -> Vec<u8> {
                 .collect();
             let within = Window {
                 width,
-                light: &light,
+                luminance: &luminance,
                 classes: &classes[top * width..bottom * width],
             };
             let first = chunk * ROWS - top;
-            for (i, out) in out.iter_mut().enumerate() {
+            for (i, (out, far)) in out.iter_mut().zip(far).enumerate() {
                 if let Some(class) = within.shared(i % width, first + i / width) {
-                    *out = class;
+                    (*out, *far) = (class, false);
                 }
             }
         });
-    settled
 }
 
 /// Some rows of a side.
 struct Window<'w> {
     width: usize,
-    light: &'w [f32],
+    /// Luminance, 1 that of a perfect diffuser.
+    luminance: &'w [f32],
     classes: &'w [u8],
 }
 
 impl Window<'_> {
     /// The class of a place whose lightest and darkest neighbours are of different ones.
     fn shared(&self, x: usize, y: usize) -> Option<u8> {
-        let rows = y.saturating_sub(1)..(y + 2).min(self.light.len() / self.width);
+        let rows = y.saturating_sub(1)..(y + 2).min(self.luminance.len() / self.width);
         let columns = x.saturating_sub(1)..(x + 2).min(self.width);
         let at = y * self.width + x;
         let (mut lightest, mut darkest) = (at, at);
         for row in rows {
             for i in row * self.width + columns.start..row * self.width + columns.end {
-                if self.light[i] > self.light[lightest] {
+                if self.luminance[i] > self.luminance[lightest] {
                     lightest = i;
                 }
-                if self.light[i] < self.light[darkest] {
+                if self.luminance[i] < self.luminance[darkest] {
                     darkest = i;
                 }
             }
         }
-        let [above, below] = [lightest, darkest].map(|i| self.light[i]);
-        let [light, dark] = [lightest, darkest].map(|i| self.classes[i]);
+        let [above, below] = [lightest, darkest].map(|i| self.luminance[i]);
+        let [lighter, darker] = [lightest, darkest].map(|i| self.classes[i]);
         let range = above - below;
-        // Also where something is no number.
-        if light == dark || !(range > CONTRAST * above) {
+        if lighter == darker || range <= CONTRAST * above {
             return None;
         }
-        let share = (above - self.light[at]) / range;
+        let share = (above - self.luminance[at]) / range;
         // Of white on paper it is the lighter one that is drawn.
-        let is_dark = match dark {
+        let is_darker = match darker {
             0 => 1.0 - share < DRAWN,
             _ => share >= DRAWN,
         };
-        Some(if is_dark { dark } else { light })
+        Some(if is_darker { darker } else { lighter })
     }
 }
 
@@ -96,7 +97,8 @@ mod tests {
     use super::*;
     use crate::{colour::srgb_encode, prepare::materials::features::Gloss};
 
-    const SIZE: usize = 40;
+    /// More rows than are settled at a time.
+    const SIZE: usize = 2 * ROWS + 2;
 
     /// Of a sheet with this light, by a classifier of three classes that knows the light of each.
     fn told(light: impl Fn(usize, usize) -> f64, of: [f64; 3]) -> (Vec<u8>, Vec<u8>) {
@@ -118,7 +120,15 @@ mod tests {
             normals: &[],
             gloss: &Gloss::default(),
         };
-        let settled = settle(&seen, &classes);
+        let (mut settled, mut far) = (classes.clone(), vec![true; classes.len()]);
+        settle(&seen, &classes, &mut settled, &mut far);
+        // What was given to another class is no longer far from its own.
+        let changed = classes.iter().zip(&settled).zip(&far);
+        assert!(
+            changed
+                .clone()
+                .all(|((before, after), far)| before == after || !far)
+        );
         (classes, settled)
     }
 
@@ -163,7 +173,7 @@ mod tests {
             };
             told(light, OF).1[10]
         };
-        assert_eq!([0.3, 0.45, 0.6].map(at), [0, 1, 1]);
+        assert_eq!([0.3, 0.43, 0.47, 0.6].map(at), [0, 0, 1, 1]);
     }
 
     #[test]
@@ -173,9 +183,27 @@ mod tests {
         let light = |x: usize, y: usize| match (x + y) % 3 {
             0 => OF[0],
             1 => OF[1],
-            _ => 0.776,
+            _ => 0.781,
         };
         let (classes, settled) = told(light, OF);
         assert_eq!(classes, settled);
+    }
+
+    #[test]
+    fn edges_are_settled_across_rows_as_across_columns() {
+        const OF: [f64; 3] = [0.8, 0.2, 0.5];
+        // Edges where one batch of rows ends and the next begins.
+        let ink = |place: usize| {
+            let edges = [[5.3, 9.5], [60.0, 64.3], [125.4, 128.5]];
+            let covered: f64 = edges.iter().map(|edges| covered(place, *edges)).sum();
+            OF[0] + (OF[1] - OF[0]) * covered
+        };
+        let (_, columns) = told(|x, _| ink(x), OF);
+        let (_, rows) = told(|_, y| ink(y), OF);
+        for i in 0..SIZE * SIZE {
+            assert_eq!(rows[i], columns[i % SIZE * SIZE + i / SIZE], "{i}");
+        }
+        assert!(!columns.contains(&2));
+        assert_eq!([columns[64], columns[125], columns[128]], [0, 1, 1]);
     }
 }

@@ -16,8 +16,9 @@ use crate::{
 
 /// How many features a place has.
 pub const FEATURES: usize = 8;
-/// So many of them are a place's own; the others tell of its surroundings: their relief, and then more.
+/// So many of them are a place's own.
 pub const OWN: usize = 5;
+/// So many are its own or tell of the relief around it; the others of its surroundings' colour.
 pub const WITH_RELIEF: usize = 7;
 /// The first ones are colours, sRGB-encoded.
 const COLOURS: usize = 3;
@@ -130,7 +131,9 @@ fn read_row(band: &Band, solved: &Solved, rig: &Rig, row: usize, out: &mut [[u8;
     }
 }
 
-/// What is seen of a place of which a medium covers `share` and bare paper the rest.
+/// About what is seen of a place of which a medium covers `share` and bare paper the rest. Colours are mixed in light;
+/// of the others, which are not linear, the mean is as near as is needed: gloss and relief of a stroke differ little
+/// from those of its paper.
 pub fn mixed(medium: &Features, paper: &Features, share: f32) -> Features {
     let between = |a: f32, b: f32| share * a + (1.0 - share) * b;
     let in_light = |a: f32, b: f32| {
@@ -192,7 +195,8 @@ impl Seen<'_> {
         }
         // At the picture's edge one side is missing.
         let whole = (2 * REACH + 1) * (2 * REACH + 1);
-        let hollow = match count as usize == whole {
+        // Of nine places, over two pixels each; in slope per pixel. What is no number is even, as with the others.
+        let hollow = match count as usize == whole && hollow.is_finite() {
             true => hollow / 18.0,
             false => 0.0,
         };

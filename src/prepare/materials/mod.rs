@@ -30,7 +30,7 @@ use self::{
     ways::{Classifier, Surroundings, Way},
 };
 use super::capture::Crop;
-use crate::optics::medium::MediumId;
+use crate::optics::medium::{Matter, MediumId};
 
 /// Places of a class that are learnt from, at most.
 const LEARNT: usize = 1000;
@@ -42,14 +42,14 @@ const PAPER: [f64; 2] = [0.6, 0.9];
 /// How much farther from its class than nearly all of its swatch a place is unlike it, in squares.
 const UNLIKE: f64 = 2.0;
 
-/// By how much better places are told with the relief around them if it is to be seen, and with all of their
-/// surroundings if these are. What a way is chosen by
-/// are parts of the swatches that it has learnt from other parts of, and a few swatches say little: surroundings
-/// that come with the places where they happen to lie are not those of the sheet. On the sample, with swatches of
-/// 400 pixels, seeing them does better by .010 and .023 there, and takes a fifth of the sheet for what it is not.
+/// By how much better places have to be told for each step of surroundings that is seen (see [`Surroundings`]). What
+/// a way is chosen by are parts of the swatches that it has learnt from other parts of, and a few swatches say little:
+/// surroundings that come with the places where they happen to lie are not those of the sheet. On the sample, with
+/// swatches of 400 pixels, seeing all of them does better by .010 and .023 there, and takes a fifth of the sheet for
+/// what it is not.
 const BETTER: f64 = 0.05;
 
-/// Media that are laid on with the brush: no strokes, and where they are thin they are pale all over.
+/// Media that are laid on broadly: where they are thin they are pale all over. Bistre is drawn with as well as washed.
 const BROAD: [&str; 4] = ["wash", "watercolour", "prepared-ground", "tinted-ground"];
 /// The least share of a place that strokes are learnt from. Less is told by the neighbours (see [`edges`]), and would
 /// be lead point by itself.
@@ -125,14 +125,14 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     let choosing = places.thinned(Part::Choosing, JUDGED);
     let held_out = places.thinned(Part::HeldOut, JUDGED);
     let learnt = counts(&learning, media.len());
-    let mut all = learning.clone();
-    all.extend(thinly_drawn(&learning, &media));
+    let mut with_thin = learning.clone();
+    with_thin.extend(thinly_drawn(&learning, &media));
     // Its distances tell places that are like no swatch, whatever tells classes apart.
     let discriminant = Discriminant::fit(&learning, media.len())?;
-    let limits = limits(&discriminant, &learning, media.len());
+    let limits = limits(&discriminant, &with_thin, media.len());
     let fitted: Vec<Option<Classifier>> = Way::ALL
         .into_par_iter()
-        .map(|way| Classifier::fit(way, &all, &choosing, media.len()))
+        .map(|way| Classifier::fit(way, &with_thin, &choosing, media.len()))
         .collect();
     let judged: Vec<(Trial, Classifier)> = fitted
         .into_iter()
@@ -149,7 +149,7 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     let trials: Vec<Trial> = judged.iter().map(|(trial, _)| trial.clone()).collect();
     let best = best_of(trials.iter().map(|trial| (trial.way, trial.choosing)))?;
     let (_, mut chosen) = judged.into_iter().nth(best)?;
-    chosen.meet(&everywhere(seen), &counts(&all, media.len()));
+    chosen.meet(&everywhere(seen), &counts(&with_thin, media.len()));
     let width = seen.width.max(1);
     let mut classes = vec![0u8; seen.albedo.len()];
     let mut far = vec![false; classes.len()];
@@ -162,18 +162,17 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
             *class = found as u8;
         }
     });
-    let settled = edges::settle(seen, &classes);
-    let all = classes.len().max(1) as f64;
+    let mut settled = classes.clone();
     // What is like no swatch as it is a little of two is known.
-    let places = far.iter().zip(classes.iter().zip(&settled));
-    let unlike = places.filter(|(far, (by_itself, settled))| **far && by_itself == settled);
-    let unlike = unlike.count() as f64 / all;
-    let mut counts = vec![0u64; media.len()];
+    edges::settle(seen, &classes, &mut settled, &mut far);
+    let total = classes.len().max(1) as f64;
+    let unlike = far.iter().filter(|far| **far).count() as f64 / total;
+    let mut met = vec![0u64; media.len()];
     for class in &settled {
-        counts[usize::from(*class)] += 1;
+        met[usize::from(*class)] += 1;
     }
     let materials = Materials {
-        coverage: counts.into_iter().map(|count| count as f64 / all).collect(),
+        coverage: met.into_iter().map(|count| count as f64 / total).collect(),
         unlike,
         media,
         paper_shown,
@@ -230,7 +229,12 @@ fn thinly_drawn(
 ) -> Vec<(Features, usize)> {
     let of_strokes: Vec<bool> = media
         .iter()
-        .map(|medium| medium.is_some_and(|id| !BROAD.contains(&id.name())))
+        .map(|medium| {
+            // A groove covers nothing.
+            medium.is_some_and(|id| {
+                id.medium().matter != Matter::Relief && !BROAD.contains(&id.name())
+            })
+        })
         .collect();
     let paper: Vec<&Features> = learning
         .iter()

@@ -42,9 +42,9 @@ pub struct Way {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Surroundings {
     Nothing,
-    /// How uneven and how hollow it is: a groove is told by that.
+    /// How uneven and how hollow the relief is: a groove is told by that.
     Relief,
-    /// How uneven its colour is as well: chalk is told by that.
+    /// How uneven the colour is as well: chalk is told by that.
     All,
 }
 
@@ -121,10 +121,17 @@ impl Classifier {
             .iter()
             .map(|(features, class)| (way.sees(features), *class))
             .collect();
+        // As if each class were met as often, however many places it was learnt from.
+        let even = learning.len() as f64 / classes.max(1) as f64;
+        let ratio = |class| {
+            let count = learning.iter().filter(|(_, of)| *of == class).count();
+            even / count.max(1) as f64
+        };
+        let ratios: Vec<f64> = (0..classes).map(ratio).collect();
         let of = |fitted| Self {
             way,
             fitted,
-            ratios: vec![1.0; classes],
+            ratios: ratios.clone(),
         };
         match way.method {
             Method::Discriminant => {
