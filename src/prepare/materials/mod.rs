@@ -127,9 +127,10 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     let learnt = counts(&learning, media.len());
     let mut with_thin = learning.clone();
     with_thin.extend(thinly_drawn(&learning, &media));
-    // Its distances tell places that are like no swatch, whatever tells classes apart.
+    // Its distances tell places that are like no swatch, whatever tells classes apart. Thinly drawn ones have no say in
+    // that: what no swatch shows would mostly look like a thin stroke.
     let discriminant = Discriminant::fit(&learning, media.len())?;
-    let limits = limits(&discriminant, &with_thin, media.len());
+    let limits = limits(&discriminant, &learning, media.len());
     let fitted: Vec<Option<Classifier>> = Way::ALL
         .into_par_iter()
         .map(|way| Classifier::fit(way, &with_thin, &choosing, media.len()))
