@@ -353,7 +353,14 @@ fn keep(picture: &Picture, name: &str) {
 #[track_caller]
 fn follows(leader: &mut Machine, follower: &mut Machine, what: &str) {
     let told = leader.told();
-    follower.until(what, |follower| follower.told() == told);
+    // Both begin alike: the follower has to have heard it.
+    let has_heard = |follower: &mut Machine| {
+        let leader = follower.standing().leader;
+        leader.is_some_and(|leader| leader.shown_version.is_some())
+    };
+    follower.until(what, |follower| {
+        has_heard(follower) && follower.told() == told
+    });
     follower.settle();
 }
 
