@@ -19,10 +19,11 @@ const CONTRAST: f32 = 0.1;
 /// Rows that are settled at a time.
 const ROWS: usize = 64;
 
-/// Gives places that two of the `classes` share to one, in `settled`, which holds the same before; these are `far` from
-/// no class any more. The first class is bare paper.
-pub fn settle(seen: &Seen<'_>, classes: &[u8], settled: &mut [u8], far: &mut [bool]) {
+/// `classes` once the places that two of them share are given to one, which are `far` from no class any more. The
+/// first class is bare paper.
+pub fn settle(seen: &Seen<'_>, classes: &[u8], far: &mut [bool]) -> Vec<u8> {
     let (width, height) = (seen.width.max(1), seen.height());
+    let mut settled = classes.to_vec();
     settled
         .par_chunks_mut(ROWS * width)
         .zip(far.par_chunks_mut(ROWS * width))
@@ -49,6 +50,7 @@ pub fn settle(seen: &Seen<'_>, classes: &[u8], settled: &mut [u8], far: &mut [bo
                 }
             }
         });
+    settled
 }
 
 /// Some rows of a side.
@@ -120,15 +122,11 @@ mod tests {
             normals: &[],
             gloss: &Gloss::default(),
         };
-        let (mut settled, mut far) = (classes.clone(), vec![true; classes.len()]);
-        settle(&seen, &classes, &mut settled, &mut far);
+        let mut far = vec![true; classes.len()];
+        let settled = settle(&seen, &classes, &mut far);
         // What was given to another class is no longer far from its own.
-        let changed = classes.iter().zip(&settled).zip(&far);
-        assert!(
-            changed
-                .clone()
-                .all(|((before, after), far)| before == after || !far)
-        );
+        let mut places = classes.iter().zip(&settled).zip(&far);
+        assert!(places.all(|((before, after), far)| before == after || !far));
         (classes, settled)
     }
 

@@ -39,7 +39,7 @@ pub struct Way {
 
 /// What is seen of a place's surroundings. A thin pen stroke, whose surroundings are its neighbours', is told better
 /// without.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surroundings {
     Nothing,
     /// How uneven and how hollow the relief is: a groove is told by that.

@@ -9,7 +9,7 @@ use crate::{
         Report, SideReport,
         capture::{BARE_PAPER, Capture},
         gloss::{Roughness, first::Surfaces},
-        materials::{Materials, features, legend, network, ways::Method},
+        materials::{BETTER, Materials, features, legend, network, ways::Method},
     },
 };
 
@@ -169,7 +169,7 @@ fn of_materials(materials: &Materials) -> String {
     let mut out = format!(
         "<h3>Materials</h3><p>Told apart by {}, learnt from blocks of the swatches, and small swatches as a \
          whole; others chose between {} ways, of which those that see more of a place's surroundings have to do \
-         better by .05 for each step, and others again, of which none knew, judge them. A \
+         better by {BETTER} for each step, and others again, of which none knew, judge them. A \
          network then also weighs how often each is met on the sheet. Bare paper was learnt {}. {:.2} % of the side are like no swatch.</p>\
          <table><tr><th>Way<th>right where it was chosen<th>right on held-out places",
         features::NAMES.join(", "),
