@@ -509,6 +509,10 @@ fn a_leader_that_is_lost_leaves_its_picture_and_is_followed_when_it_is_back() {
     assert_eq!(log.matches("west has been silent").count(), 1, "{log}");
     assert_eq!(log.matches("west is heard again").count(), 1, "{log}");
 
+    // It asks once a second, and can only be missed by a leader that has heard it.
+    leader.until("the follower is heard", |leader| {
+        leader.standing().followers[0].silent_s.is_some()
+    });
     drop(follower);
     leader.until("a lost follower is told of", |leader| {
         leader
