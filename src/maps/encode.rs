@@ -13,7 +13,7 @@ use exr::{
     meta::attribute::{Chromaticities, LineOrder},
     prelude::{ImageAttributes, Layer, LayerAttributes},
 };
-use png::{BitDepth, ColorType, Compression, PixelDimensions, Unit};
+use png::{BitDepth, ColorType, Compression, Filter, PixelDimensions, Unit};
 
 use super::MapError;
 use crate::colour::{D65, SRGB_PRIMARIES};
@@ -286,6 +286,11 @@ fn save_png(
         encoder.set_color(colour);
         encoder.set_depth(depth);
         encoder.set_compression(Compression::Fast);
+        if depth == BitDepth::Sixteen {
+            // To try all filters for each row takes longer than all the rest, and makes albedo,
+            // normals and heights smaller by 3 % at most (measured on the sample's).
+            encoder.set_filter(Filter::Avg);
+        }
         encoder.set_pixel_dims(dpi.map(|dpi| {
             let per_metre = (dpi / 0.0254).round() as u32;
             PixelDimensions {

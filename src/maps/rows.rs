@@ -44,6 +44,15 @@ impl ColourRows {
         self.left
     }
 
+    /// Leaves the next rows out.
+    ///
+    /// # Errors
+    /// As [`Self::read`], unless nothing of what is left out has to be read.
+    pub fn skip(&mut self, rows: usize) -> Result<(), MapError> {
+        self.left = self.left.saturating_sub(rows);
+        self.source.skip(rows)
+    }
+
     /// Reads the next rows: as many as there are in `out`, planes of linear red, green and blue, of
     /// a length that is a multiple of the width. All values are finite; no clipping.
     ///

@@ -239,20 +239,20 @@ pub fn ways_back(alpha: f64, n: f64) -> Vec<(f64, f64)> {
     const DIRECTIONS: u32 = 64;
     const WALKS: u32 = 8192;
     const BINS: usize = 128;
-    let mut bins = [(0.0, 0.0); BINS];
-    let mut add = |way: f64, weight: f64| {
-        let bin = ((BINS as f64 * 2.0 / way) as usize).min(BINS - 1);
-        bins[bin].0 += way * weight;
-        bins[bin].1 += weight;
-    };
-    for i in 0..DIRECTIONS {
+    let of_direction = |i: u32| {
+        let mut bins = [(0.0, 0.0); BINS];
+        let mut add = |way: f64, weight: f64| {
+            let bin = ((BINS as f64 * 2.0 / way) as usize).min(BINS - 1);
+            bins[bin].0 += way * weight;
+            bins[bin].1 += weight;
+        };
         // Finer towards grazing light; 2μ dμ.
         let v = (f64::from(i) + 0.5) / f64::from(DIRECTIONS);
         let mu = v * v;
         let weight = 4.0 * mu * v / f64::from(DIRECTIONS);
         if alpha < ALPHA_SMOOTH || n - 1.0 < INDEX_MATCHED {
             add(2.0 / mu, weight * fresnel_dielectric(mu, 1.0 / n));
-            continue;
+            return bins;
         }
         let w = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
         for k in 0..WALKS {
@@ -261,6 +261,16 @@ pub fn ways_back(alpha: f64, n: f64) -> Vec<(f64, f64)> {
             if !end.in_air {
                 add(1.0 / mu + 1.0 / end.cosine, weight / f64::from(WALKS));
             }
+        }
+        bins
+    };
+    let each: Vec<_> = (0..DIRECTIONS).into_par_iter().map(of_direction).collect();
+    // In their order, so that the sum does not depend on how many processors there are.
+    let mut bins = [(0.0, 0.0); BINS];
+    for own in &each {
+        for (sum, more) in bins.iter_mut().zip(own) {
+            sum.0 += more.0;
+            sum.1 += more.1;
         }
     }
     let all: f64 = bins.iter().map(|(_, weight)| weight).sum();

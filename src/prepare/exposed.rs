@@ -3,6 +3,8 @@
 
 use std::path::PathBuf;
 
+use super::reduced::sum_of;
+
 /// Linear light from which a channel of a file without floats counts as clipped.
 const CLIPPED: f32 = 0.995;
 /// Mean linear light, noise included, below which a photograph shows nothing; and of the brightest one's.
@@ -26,12 +28,22 @@ pub struct Tally {
 impl Tally {
     /// Counts pixels of linear red, green and blue; floats have no level of clipping.
     pub fn add(&mut self, [r, g, b]: [&[f32]; 3], is_float: bool) {
-        for ((r, g), b) in r.iter().zip(g).zip(b) {
-            let most = r.max(*g).max(*b);
-            self.count += 1;
-            self.clipped += u64::from(!is_float && most >= CLIPPED);
-            self.light += f64::from(most.max(0.0));
-            self.unknown += u64::from(!(r + g + b).is_finite());
+        /// Pixels whose counts and light are summed in 32 bits.
+        const TOGETHER: usize = 256;
+        let pixels = r.chunks(TOGETHER).zip(g.chunks(TOGETHER));
+        for ((r, g), b) in pixels.zip(b.chunks(TOGETHER)) {
+            let (mut clipped, mut unknown) = (0u32, 0u32);
+            let mut most = [0.0f32; TOGETHER];
+            for (((r, g), b), most) in r.iter().zip(g).zip(b).zip(&mut most) {
+                let brightest = r.max(*g).max(*b);
+                clipped += u32::from(brightest >= CLIPPED);
+                unknown += u32::from(!(r + g + b).is_finite());
+                *most = brightest.max(0.0);
+            }
+            self.count += r.len() as u64;
+            self.clipped += u64::from(if is_float { 0 } else { clipped });
+            self.unknown += u64::from(unknown);
+            self.light += f64::from(sum_of(&most));
         }
     }
 

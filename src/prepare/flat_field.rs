@@ -7,7 +7,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::photographs::{Stack, StackError};
+use super::{
+    photographs::{Stack, StackError},
+    reduced::sum_of,
+};
 use crate::maps::ColourEncoding;
 
 use super::capture::Crop;
@@ -102,7 +105,7 @@ impl FlatField {
                     let sum = &mut sums[cell_y * cells[0] + cell];
                     let [r, g, b] = planes.map(|plane| &plane[edge[0]..edge[1]]);
                     // As photographs have 16 bits, sums of a cell's row are exact enough.
-                    let total = |plane: &[f32]| f64::from(plane.iter().sum::<f32>());
+                    let total = |plane: &[f32]| f64::from(sum_of(plane));
                     for (sum, plane) in sum.iter_mut().zip([r, g, b]) {
                         *sum += total(plane);
                     }
@@ -224,10 +227,11 @@ impl FlatField {
                     false => (((cell as f64 + 1.5) * self.step[0]) as usize).clamp(x, plane.len()),
                 };
                 let slope = (across[cell + 1] - across[cell]) / self.step[0] as f32;
-                let middle = ((cell as f64 + 0.5) * self.step[0]) as f32;
+                let from = (x as f64 + 0.5 - (cell as f64 + 0.5) * self.step[0]) as f32;
                 let at = across[cell];
                 for (i, value) in plane[x..end].iter_mut().enumerate() {
-                    *value *= at + slope * ((x + i) as f32 + 0.5 - middle);
+                    // Compilers know how to make many floats of 32 bits at once.
+                    *value *= at + slope * (from + i as i32 as f32);
                 }
                 x = end;
             }

@@ -8,8 +8,12 @@ use rayon::prelude::*;
 use super::{capture::Crop, exposed::Tally, flat_field::FlatField, reduced::Grey};
 use crate::maps::{ColourEncoding, ColourRows, MapError};
 
-/// What a band may take in memory, in bytes.
-const BAND_BYTES: usize = 96 << 20;
+/// What a band takes in memory, in bytes: as much as stays in caches from one step to the next.
+const BAND_BYTES: usize = 8 << 20;
+/// More, so that there are rows for every processor.
+const BAND_ROWS: usize = 64;
+/// But not more than this.
+const MOST_BYTES: usize = 96 << 20;
 /// And one of a photograph that is read by itself, as each processor may read one.
 const SINGLE_BYTES: usize = 8 << 20;
 /// Bytes of one pixel of one photograph.
@@ -35,6 +39,8 @@ pub struct Stack {
     /// Rows of the crop that have been read.
     done: usize,
     band_rows: usize,
+    /// Of so many rows one is read.
+    step: usize,
     /// Planes of bands that are done with: memory that is given back has to be cleared again.
     spare: Vec<[Vec<f32>; 3]>,
     /// Of each photograph, where it was asked for.
@@ -47,6 +53,8 @@ pub struct Stack {
 pub struct Band {
     /// The first row, counted from the top of the crop.
     pub top: usize,
+    /// From one row to the next: 1, unless the stack is thin.
+    step: usize,
     pub rows: usize,
     pub width: usize,
     /// Of each photograph, linear red, green and blue.
@@ -54,6 +62,11 @@ pub struct Band {
 }
 
 impl Band {
+    /// Where a row of it is, counted from the top of the crop.
+    pub fn y(&self, row: usize) -> usize {
+        self.top + row * self.step
+    }
+
     /// Red, green and blue of a row of a photograph.
     pub fn row(&self, photograph: usize, row: usize) -> [&[f32]; 3] {
         let range = row * self.width..(row + 1) * self.width;
@@ -61,19 +74,17 @@ impl Band {
             .each_ref()
             .map(|plane| &plane[range.clone()])
     }
-}
 
-impl Band {
     /// Divides each photograph by its lamp's light; leaves them as they are without `fields`.
     pub fn divide(&mut self, fields: &[FlatField]) {
-        let (rows, width, top) = (self.rows, self.width, self.top);
+        let (rows, width, top, step) = (self.rows, self.width, self.top, self.step);
         let photographs = self.planes.par_iter_mut().zip(fields);
         photographs.for_each(|(planes, field)| {
             let [r, g, b] = planes;
             for row in 0..rows {
                 let range = row * width..(row + 1) * width;
                 let planes = [&mut r[range.clone()], &mut g[range.clone()], &mut b[range]];
-                field.divide(top + row, planes);
+                field.divide(top + row * step, planes);
             }
         });
     }
@@ -111,7 +122,10 @@ impl Stack {
         let full = readers.first().map_or(1, |rows| rows.header().size[0]) as usize;
         let count = paths.len() + usize::from(ambient.is_some());
         let bytes = full * PIXEL_BYTES * count.max(1);
-        let most = if count > 1 { BAND_BYTES } else { SINGLE_BYTES };
+        let band_rows = match count {
+            0 | 1 => SINGLE_BYTES / bytes,
+            _ => (BAND_BYTES / bytes).max(BAND_ROWS).min(MOST_BYTES / bytes),
+        };
         let mut stack = Self {
             readers,
             ambient,
@@ -120,7 +134,8 @@ impl Stack {
             spare: Vec::new(),
             greys: Vec::new(),
             tallies: vec![Tally::default(); paths.len()],
-            band_rows: (most / bytes).clamp(1, 512),
+            band_rows: band_rows.clamp(1, 512),
+            step: 1,
         };
         stack.skip(crop.top as usize)?;
         Ok(stack)
@@ -133,16 +148,14 @@ impl Stack {
 
     fn skip(&mut self, rows: usize) -> Result<(), StackError> {
         for reader in self.readers.iter_mut().chain(&mut self.ambient) {
-            let width = reader.header().size[0] as usize;
-            let mut left = rows;
-            while left > 0 {
-                let now = left.min(self.band_rows);
-                let mut planes = [0, 1, 2].map(|_| vec![0.0; width * now]);
-                reader.read(planes.each_mut().map(Vec::as_mut_slice))?;
-                left -= now;
-            }
+            reader.skip(rows)?;
         }
         Ok(())
+    }
+
+    /// Of so many rows (1 or more) one is read from now on, from the first one that is left.
+    pub fn thin(&mut self, step: usize) {
+        self.step = step;
     }
 
     /// From now on, makes smaller what each photograph shows, its room's light included, as
@@ -176,7 +189,9 @@ impl Stack {
         reason = "an iterator would hide that reading can fail"
     )]
     pub fn next(&mut self) -> Result<Option<Band>, StackError> {
-        let rows = self.band_rows.min(self.crop.height() - self.done);
+        let step = self.step;
+        let left = self.crop.height() - self.done;
+        let rows = self.band_rows.min(left.div_ceil(step));
         if rows == 0 {
             return Ok(None);
         }
@@ -190,7 +205,15 @@ impl Stack {
             for plane in &mut planes {
                 plane.resize(full * rows, 0.0);
             }
-            reader.read(planes.each_mut().map(Vec::as_mut_slice))?;
+            if step == 1 {
+                reader.read(planes.each_mut().map(Vec::as_mut_slice))?;
+            } else {
+                for row in 0..rows {
+                    let range = row * full..(row + 1) * full;
+                    reader.read(planes.each_mut().map(|plane| &mut plane[range.clone()]))?;
+                    reader.skip((step - 1).min(left - 1 - row * step))?;
+                }
+            }
             if crop.width() < full {
                 for plane in &mut planes {
                     for y in 0..rows {
@@ -238,11 +261,12 @@ impl Stack {
         }
         let band = Band {
             top: self.done,
+            step,
             rows,
             width: crop.width(),
             planes,
         };
-        self.done += rows;
+        self.done += (rows * step).min(left);
         Ok(Some(band))
     }
 }

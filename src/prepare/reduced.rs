@@ -124,7 +124,7 @@ impl Squares {
     fn add(&mut self, row: [&[f32]; 3], whole: impl FnOnce([&[f32]; 3])) {
         for (sums, pixels) in self.sums.iter_mut().zip(row) {
             for (sum, pixels) in sums.iter_mut().zip(pixels.chunks_exact(self.step)) {
-                *sum += pixels.iter().sum::<f32>();
+                *sum += sum_of(pixels);
             }
         }
         self.rows += 1;
@@ -141,6 +141,19 @@ impl Squares {
             sums.fill(0.0);
         }
     }
+}
+
+/// The sum of values: in lanes, which do not wait for each other.
+pub fn sum_of(values: &[f32]) -> f32 {
+    const LANES: usize = 16;
+    let (whole, rest) = values.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for values in whole {
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += value;
+        }
+    }
+    sums.iter().chain(rest).sum()
 }
 
 fn luminance([r, g, b]: [&[f32]; 3]) -> impl Iterator<Item = f32> {

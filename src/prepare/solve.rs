@@ -3,6 +3,8 @@
 
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::{
     PrepareError,
     albedo::Albedo,
@@ -108,7 +110,7 @@ pub(super) fn solve_side(
             let [r, g, b] = &mut solved.albedo;
             correction.apply_planes([r, g, b]);
         }
-        normals.append(&mut solved.normal);
+        normals.par_extend(solved.normal);
         albedo.add(&solved.albedo);
         solved.residual.iter().for_each(|r| residuals.add(*r));
         doubted += solved.doubted;

@@ -3,9 +3,13 @@
 //! The slopes of a surface have no curl. Turned by a quarter they have nothing else: what was its divergence is
 //! their curl. (Turned by a half, hills become hollows, which no photograph contradicts.)
 
+use rayon::prelude::*;
+
 /// Slopes are looked at over so many pixels at once: the finest has the paper's grain, where the coarser ones have
 /// less noise.
 const CELLS: [usize; 3] = [1, 2, 4];
+/// Rows with so many of them in all are looked at, evenly spread: more say nothing new.
+const LOOKED_AT: usize = 1 << 18;
 /// By how much curl is stronger than divergence, in squares, where lamps are turned. Of noise alone both are alike.
 const MOST: f64 = 3.0;
 /// Steeper places say more of shadows than of the surface.
@@ -19,7 +23,7 @@ pub fn by_a_quarter(normals: &[[f32; 3]], width: usize) -> bool {
         .any(|[curl, divergence]| curl > MOST * divergence)
 }
 
-/// Sums of their squares over squares of `cell` pixels; `None` where these are too few.
+/// Sums of their squares between squares of `cell` pixels; `None` where these are too few.
 fn curl_and_divergence(normals: &[[f32; 3]], width: usize, cell: usize) -> Option<[f64; 2]> {
     /// Along each side.
     const FEWEST: usize = 12;
@@ -27,24 +31,21 @@ fn curl_and_divergence(normals: &[[f32; 3]], width: usize, cell: usize) -> Optio
     if size.iter().any(|side| *side < FEWEST) {
         return None;
     }
-    let cells: Vec<[f64; 2]> = (0..size[0] * size[1])
-        .map(|i| {
-            let (left, top) = (i % size[0] * cell, i / size[0] * cell);
-            let mut sum = [0.0; 2];
-            for y in top..top + cell {
-                for [nx, ny, nz] in &normals[y * width + left..y * width + left + cell] {
-                    let up = f64::from(nz.max(0.05));
-                    // Down the rows, height falls where the normal leans down.
-                    sum[0] -= (f64::from(*nx) / up).clamp(-STEEPEST, STEEPEST);
-                    sum[1] += (f64::from(*ny) / up).clamp(-STEEPEST, STEEPEST);
-                }
+    let at = |x: usize, y: usize| {
+        let (left, top) = (x * cell, y * cell);
+        let mut sum = [0.0; 2];
+        for y in top..top + cell {
+            for [nx, ny, nz] in &normals[y * width + left..y * width + left + cell] {
+                let up = f64::from(nz.max(0.05));
+                // Down the rows, height falls where the normal leans down.
+                sum[0] -= (f64::from(*nx) / up).clamp(-STEEPEST, STEEPEST);
+                sum[1] += (f64::from(*ny) / up).clamp(-STEEPEST, STEEPEST);
             }
-            sum.map(|v| v / (cell * cell) as f64)
-        })
-        .collect();
-    let at = |x: usize, y: usize| cells[y * size[0] + x];
-    let (mut curl, mut divergence) = (0.0, 0.0);
-    for y in 1..size[1] - 1 {
+        }
+        sum.map(|v| v / (cell * cell) as f64)
+    };
+    let row = |y: usize| {
+        let (mut curl, mut divergence) = (0.0, 0.0);
         for x in 1..size[0] - 1 {
             let [right, left] = [at(x + 1, y), at(x - 1, y)];
             let [below, above] = [at(x, y + 1), at(x, y - 1)];
@@ -55,8 +56,14 @@ fn curl_and_divergence(normals: &[[f32; 3]], width: usize, cell: usize) -> Optio
                 divergence += spreads * spreads;
             }
         }
-    }
-    Some([curl, divergence])
+        [curl, divergence]
+    };
+    // Row by row, so that the sum does not depend on how many processors there are.
+    let every = (size[0] * size[1]).div_ceil(LOOKED_AT);
+    let rows = (1..size[1] - 1).into_par_iter().step_by(every);
+    let rows: Vec<[f64; 2]> = rows.map(row).collect();
+    let sum = |which: usize| rows.iter().map(|row| row[which]).sum::<f64>();
+    Some([sum(0), sum(1)])
 }
 
 #[cfg(test)]

@@ -65,9 +65,12 @@ fn formats(folder: &Path) -> Vec<PathBuf> {
     let tiff = folder.join("a.tif");
     let mut file = std::fs::File::create(&tiff).expect("a file");
     let mut encoder = tiff::encoder::TiffEncoder::new(&mut file).expect("a TIFF");
-    encoder
-        .write_image::<tiff::encoder::colortype::RGB16>(width, height, pixels.as_flattened())
-        .expect("written");
+    // In strips of four rows; the last one has one.
+    let mut image = encoder
+        .new_image::<tiff::encoder::colortype::RGB16>(width, height)
+        .expect("an image");
+    image.rows_per_strip(4).expect("strips");
+    image.write_data(pixels.as_flattened()).expect("written");
     drop(file);
     let exr = folder.join("a.exr");
     let floats: Vec<[f32; 3]> = pixels
@@ -95,6 +98,56 @@ fn bands_hold_what_the_whole_picture_does() {
                 let expected = at_once(path, encoding, crop);
                 assert_eq!(pixels.len(), crop.width() * crop.height());
                 assert!(pixels == expected, "{}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_thin_stack_holds_every_so_manieth_row() {
+    let folder = folder();
+    let paths = formats(folder.path());
+    let encoding = ColourEncoding::Linear;
+    let crop = Crop {
+        left: 5,
+        top: 7,
+        right: 90,
+        bottom: 60,
+    };
+    for step in [1, 2, 3, 4, 5, 9, 52, 53, 60] {
+        let ambient = Some(paths[0].as_path());
+        let mut stack =
+            Stack::open(&paths[1..], ambient, encoding, crop, folder.path()).expect("a stack");
+        stack.thin(step);
+        let all = at_once(&paths[0], encoding, crop);
+        let mut seen = Vec::new();
+        while let Some(band) = stack.next().expect("a band") {
+            for row in 0..band.rows {
+                let y = band.y(row);
+                seen.push(y);
+                for i in 0..paths.len() - 1 {
+                    // All show the same, which is also what is taken from them.
+                    let [r, g, b] = band.row(i, row);
+                    assert_eq!(band.width, crop.width());
+                    assert!(
+                        r.iter().chain(g).chain(b).all(|v| v.abs() < 1e-6),
+                        "{step} {y}"
+                    );
+                }
+            }
+        }
+        let expected: Vec<usize> = (0..crop.height()).step_by(step).collect();
+        assert_eq!(seen, expected, "{step}");
+        let mut alone = Stack::open(&paths, None, encoding, crop, folder.path()).expect("a stack");
+        alone.thin(step);
+        let band = alone.next().expect("a band").expect("rows");
+        for (i, path) in paths.iter().enumerate() {
+            for row in 0..band.rows {
+                let [r, g, b] = band.row(i, row);
+                let found: Vec<[f32; 3]> = (0..band.width).map(|x| [r[x], g[x], b[x]]).collect();
+                let start = band.y(row) * crop.width();
+                let expected = &all[start..start + crop.width()];
+                assert!(found == expected, "{} {step} {row}", path.display());
             }
         }
     }

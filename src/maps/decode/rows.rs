@@ -102,6 +102,39 @@ impl RowSource {
         Ok(out)
     }
 
+    /// Leaves the next `rows` rows out. Strips of which nothing is asked for are not read; what has
+    /// to be read goes through memory a few rows at a time.
+    pub fn skip(&mut self, rows: usize) -> Result<(), MapError> {
+        const ROWS: usize = 64;
+        let [width, height] = self.header.size;
+        let row = width as usize * usize::from(self.header.channels);
+        let mut left = rows * row;
+        loop {
+            let take = left.min(length(&self.ahead) - self.used);
+            self.used += take;
+            left -= take;
+            if left == 0 {
+                return Ok(());
+            }
+            if let Source::Tiff { tiff, strip } = &mut self.source {
+                let rows = tiff.strip_rows();
+                // The last strip may have fewer rows.
+                while left >= rows as usize * row && (*strip + 1) * rows <= height {
+                    left -= rows as usize * row;
+                    *strip += 1;
+                }
+                if left == 0 {
+                    return Ok(());
+                }
+            }
+            self.ahead = self.more(left.min(ROWS * row))?;
+            self.used = 0;
+            if length(&self.ahead) == 0 {
+                return Err(MapError::damaged(self.path(), "it ends too early"));
+            }
+        }
+    }
+
     fn path(&self) -> &Path {
         match &self.source {
             Source::Png(png) => png.path(),

@@ -153,6 +153,11 @@ impl TiffPicture {
         self.icc.clone()
     }
 
+    /// How many rows a strip has, but for the last one, which may have fewer.
+    pub fn strip_rows(&self) -> u32 {
+        self.decoder.chunk_dimensions().1
+    }
+
     /// The samples of a strip, counted from 0.
     pub fn strip(&mut self, index: u32) -> Result<Samples, MapError> {
         let path = &self.path;

@@ -50,6 +50,11 @@ impl Samples {
         }
     }
 
+    /// Of so many rows one is asked for, unless there are swatches.
+    pub fn step(&self) -> usize {
+        self.step
+    }
+
     fn wants(&self, x: usize, y: usize) -> bool {
         // A step aside in each row of samples, so that no column of laid lines is all there is.
         let row = y / self.step;
@@ -67,7 +72,7 @@ impl Samples {
     /// Reads a band whose light was divided out.
     pub fn add(&mut self, band: &Band) {
         for row in 0..band.rows {
-            let y = band.top + row;
+            let y = band.y(row);
             let at_all = y.is_multiple_of(self.step)
                 || self
                     .swatches

@@ -46,6 +46,7 @@ pub fn surfaces(
     let mut samples = Samples::new(size, lamps.len(), &[]);
     let ambient = shots.ambient.as_deref();
     let mut stack = Stack::open(&photographs, ambient, capture.encoding, shots.crop, scratch)?;
+    stack.thin(samples.step());
     while let Some(mut band) = stack.next()? {
         band.divide(&fields);
         samples.add(&band);

@@ -165,8 +165,8 @@ pub fn remove_plane(heights: &mut [f64], width: usize) -> Option<[f64; 3]> {
 pub fn range(heights: &[f64], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
     if low <= 0.0 && high >= 1.0 {
         let finite = || heights.par_iter().copied().filter(|h| h.is_finite());
-        let least = finite().reduce(|| f64::INFINITY, f64::min);
-        let most = finite().reduce(|| f64::NEG_INFINITY, f64::max);
+        let least = finite().reduce(|| f64::INFINITY, |a, b| a.min(b));
+        let most = finite().reduce(|| f64::NEG_INFINITY, |a, b| a.max(b));
         return (least <= most).then_some([least, most]);
     }
     let mut sorted: Vec<f64> = heights.iter().copied().filter(|h| h.is_finite()).collect();
