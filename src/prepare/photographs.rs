@@ -45,7 +45,7 @@ pub struct Stack {
     spare: Vec<[Vec<f32>; 3]>,
     /// Of each photograph, where it was asked for.
     greys: Vec<Grey>,
-    /// Of each photograph.
+    /// The same.
     tallies: Vec<Tally>,
 }
 
@@ -133,7 +133,7 @@ impl Stack {
             done: 0,
             spare: Vec::new(),
             greys: Vec::new(),
-            tallies: vec![Tally::default(); paths.len()],
+            tallies: Vec::new(),
             band_rows: band_rows.clamp(1, 512),
             step: 1,
         };
@@ -170,7 +170,13 @@ impl Stack {
         std::mem::take(&mut self.greys)
     }
 
-    /// How much light the photographs hold, as far as they have been read, their room's included.
+    /// From now on, counts how much light each photograph holds.
+    pub fn tally(&mut self) {
+        self.tallies = vec![Tally::default(); self.readers.len()];
+    }
+
+    /// How much light the photographs hold, as far as they have been read since [`Self::tally`], their room's
+    /// included.
     pub fn tallies(&self) -> &[Tally] {
         &self.tallies
     }
@@ -235,16 +241,20 @@ impl Stack {
         spare.resize_with(self.readers.len(), || None);
         let mut greys: Vec<_> = self.greys.iter_mut().map(Some).collect();
         greys.resize_with(self.readers.len(), || None);
+        let mut tallies: Vec<_> = self.tallies.iter_mut().map(Some).collect();
+        tallies.resize_with(self.readers.len(), || None);
         let planes: Result<Vec<_>, MapError> = self
             .readers
             .par_iter_mut()
             .zip(spare)
             .zip(greys)
-            .zip(&mut self.tallies)
+            .zip(tallies)
             .map(|(((reader, spare), grey), tally)| {
                 let planes = read(reader, spare, grey)?;
-                let [r, g, b] = planes.each_ref().map(Vec::as_slice);
-                tally.add([r, g, b], reader.header().float);
+                if let Some(tally) = tally {
+                    let [r, g, b] = planes.each_ref().map(Vec::as_slice);
+                    tally.add([r, g, b], reader.header().float);
+                }
                 Ok(planes)
             })
             .collect();

@@ -93,31 +93,38 @@ pub(super) fn solve_side(
         shots.crop,
         scratch,
     )?;
+    stack.tally();
     if let (None, Some(step)) = (&still, moved::step(shots)) {
         stack.reduce(step);
     }
-    while let Some(mut band) = stack.next()? {
-        band.divide(&fields);
-        let rows = Rows {
-            planes: &band.planes,
-            width: band.width,
-            top: band.top,
-        };
-        left_out.add(rows);
-        let mut solved = solver.solve(rows);
-        gathering.add(&band, &solved, rig);
-        if let Some(correction) = correction {
-            let [r, g, b] = &mut solved.albedo;
-            correction.apply_planes([r, g, b]);
-        }
-        normals.par_extend(solved.normal);
-        albedo.add(&solved.albedo);
-        solved.residual.iter().for_each(|r| residuals.add(*r));
-        doubted += solved.doubted;
-        tell(
-            "solving",
-            0.1 + 0.4 * (band.top + band.rows) as f64 / size[1] as f64,
+    let mut next = stack.next()?;
+    while let Some(mut band) = next {
+        let done = (band.top + band.rows) as f64 / size[1] as f64;
+        // What of one band has to wait for something, the next one's reading does not wait for.
+        let (ahead, ()) = rayon::join(
+            || stack.next(),
+            || {
+                band.divide(&fields);
+                let rows = Rows {
+                    planes: &band.planes,
+                    width: band.width,
+                    top: band.top,
+                };
+                left_out.add(rows);
+                let mut solved = solver.solve(rows);
+                gathering.add(&band, &solved, rig);
+                if let Some(correction) = correction {
+                    let [r, g, b] = &mut solved.albedo;
+                    correction.apply_planes([r, g, b]);
+                }
+                normals.par_extend(solved.normal);
+                albedo.add(&solved.albedo);
+                solved.residual.iter().for_each(|r| residuals.add(*r));
+                doubted += solved.doubted;
+            },
         );
+        next = ahead?;
+        tell("solving", 0.1 + 0.4 * done);
         stack.recycle(band);
     }
     let greys = stack.greys();

@@ -16,7 +16,7 @@ use super::{
     lights,
     materials::legend::{self, MediaFile},
     matter,
-    relief::surface,
+    relief::{compare::range, surface},
     report,
     run::{LampFound, Report, SideReport},
     verso::Place,
@@ -274,10 +274,10 @@ struct Levels {
 
 impl Levels {
     fn new(um: &[f64]) -> Self {
-        let all = || um.par_iter().copied();
         // To a hundredth, as it is written, and never without extent.
-        let low = (all().reduce(|| 0.0, |a, b| a.min(b)) * 100.0).floor() / 100.0;
-        let high = ((all().reduce(|| 0.0, |a, b| a.max(b)) * 100.0).ceil() / 100.0).max(low + 0.01);
+        let [low, high] = range(um, [0.0, 1.0]).unwrap_or_default();
+        let low = (low.min(0.0) * 100.0).floor() / 100.0;
+        let high = ((high.max(0.0) * 100.0).ceil() / 100.0).max(low + 0.01);
         let scale = 65535.0 / (high - low);
         // Casts cut, which half a step makes the nearest.
         let value = |h: &f64| ((h - low) * scale + 0.5) as u16;

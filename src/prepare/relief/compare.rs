@@ -160,13 +160,40 @@ pub fn remove_plane(heights: &mut [f64], width: usize) -> Option<[f64; 3]> {
     Some(plane)
 }
 
+/// Heights that are looked at together.
+const LANES: usize = 8;
+/// Least and most of no heights.
+const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+fn both(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// Of the finite heights, in lanes, which do not wait for each other.
+fn least_and_most(heights: &[f64]) -> [f64; 2] {
+    let one = |h: f64| match h.is_finite() {
+        true => [h, h],
+        false => NOTHING,
+    };
+    let (whole, rest) = heights.as_chunks::<LANES>();
+    let mut lanes = [NOTHING; LANES];
+    for heights in whole {
+        for (lane, h) in lanes.iter_mut().zip(heights) {
+            *lane = both(*lane, one(*h));
+        }
+    }
+    let rest = rest.iter().map(|h| one(*h));
+    lanes.into_iter().chain(rest).fold(NOTHING, both)
+}
+
 /// The range of heights between these shares of all places (such as 0.001 and 0.999, so that
 /// single pixels do not decide). `None` where there is none.
 pub fn range(heights: &[f64], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
     if low <= 0.0 && high >= 1.0 {
-        let finite = || heights.par_iter().copied().filter(|h| h.is_finite());
-        let least = finite().reduce(|| f64::INFINITY, |a, b| a.min(b));
-        let most = finite().reduce(|| f64::NEG_INFINITY, |a, b| a.max(b));
+        let [least, most] = heights
+            .par_chunks(LANES << 10)
+            .map(least_and_most)
+            .reduce(|| NOTHING, both);
         return (least <= most).then_some([least, most]);
     }
     let mut sorted: Vec<f64> = heights.iter().copied().filter(|h| h.is_finite()).collect();

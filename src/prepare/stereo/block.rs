@@ -14,6 +14,7 @@
 )]
 
 use glam::{DVec2, DVec3};
+use pulp::{Arch, Simd, WithSimd};
 
 use super::{
     response::{Paper, Response},
@@ -233,31 +234,67 @@ pub fn response(
     i: usize,
     mu: &Lane,
 ) -> Seen {
-    let mut seen = Seen {
-        diffuse: [0.0; LANES],
-        gloss: [0.0; LANES],
-    };
-    let alpha2 = paper.alpha * paper.alpha;
-    let over_pi = paper.specular * alpha2 / std::f32::consts::PI;
-    let (h, fresnel) = (&lamps.h[i], &lamps.fresnel[i]);
-    for lane in 0..LANES {
-        let mu_i = mu[lane].clamp(MU_FLOOR, 1.0);
-        let x = mu_i.sqrt();
-        seen.diffuse[lane] = polynomial(&paper.t, x) * leaving.t[lane];
-        // GGX with Smith's correlated masking, as d_ggx and v_smith of optics::microfacet.
-        let (hx, hy, hz) = (h[0][lane], h[1][lane], h[2][lane]);
-        let (nx, ny, nz) = (n[0][lane], n[1][lane], n[2][lane]);
-        let (cx, cy, cz) = (ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx);
-        let sin2 = (cx * cx + cy * cy + cz * cz).min(1.0);
-        let spread = alpha2 + sin2 * (1.0 - alpha2);
-        let masked = (alpha2 + (1.0 - alpha2) * mu_i * mu_i).sqrt();
-        let way = 2.0 * (leaving.mu[lane] * masked + mu_i * leaving.masked[lane]);
-        let late = polynomial(&paper.late, x) * leaving.late[lane];
-        seen.gloss[lane] = over_pi * fresnel[lane] / (spread * spread * way) + late;
-    }
-    seen
+    Arch::new().dispatch(Responding {
+        paper,
+        n,
+        leaving,
+        h: &lamps.h[i],
+        fresnel: &lamps.fresnel[i],
+        mu,
+    })
 }
 
+/// What [`response`] is found from. Half of a sheet's time goes into it: it is compiled for wider
+/// vectors as well, which are used where the processor has them. What it finds is the same.
+struct Responding<'r> {
+    paper: &'r Paper,
+    n: &'r Lane3,
+    leaving: &'r Leaving,
+    h: &'r Lane3,
+    fresnel: &'r Lane,
+    mu: &'r Lane,
+}
+
+impl WithSimd for Responding<'_> {
+    type Output = Seen;
+
+    // Else it would be compiled for the narrow ones.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Seen {
+        let Self {
+            paper,
+            n,
+            leaving,
+            h,
+            fresnel,
+            mu,
+        } = self;
+        let mut seen = Seen {
+            diffuse: [0.0; LANES],
+            gloss: [0.0; LANES],
+        };
+        let alpha2 = paper.alpha * paper.alpha;
+        let over_pi = paper.specular * alpha2 / std::f32::consts::PI;
+        for lane in 0..LANES {
+            let mu_i = mu[lane].clamp(MU_FLOOR, 1.0);
+            let x = mu_i.sqrt();
+            seen.diffuse[lane] = polynomial(&paper.t, x) * leaving.t[lane];
+            // GGX with Smith's correlated masking, as d_ggx and v_smith of optics::microfacet.
+            let (hx, hy, hz) = (h[0][lane], h[1][lane], h[2][lane]);
+            let (nx, ny, nz) = (n[0][lane], n[1][lane], n[2][lane]);
+            let (cx, cy, cz) = (ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx);
+            let sin2 = (cx * cx + cy * cy + cz * cz).min(1.0);
+            let spread = alpha2 + sin2 * (1.0 - alpha2);
+            let masked = (alpha2 + (1.0 - alpha2) * mu_i * mu_i).sqrt();
+            let way = 2.0 * (leaving.mu[lane] * masked + mu_i * leaving.masked[lane]);
+            let late = polynomial(&paper.late, x) * leaving.late[lane];
+            seen.gloss[lane] = over_pi * fresnel[lane] / (spread * spread * way) + late;
+        }
+        seen
+    }
+}
+
+#[inline(always)]
 fn polynomial<const N: usize>(coefficients: &[f32; N], x: f32) -> f32 {
     let mut sum = 0.0;
     for c in coefficients.iter().rev() {
