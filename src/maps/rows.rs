@@ -61,14 +61,12 @@ impl ColourRows {
     pub fn read(&mut self, [r, g, b]: [&mut [f32]; 3]) -> Result<(), MapError> {
         let width = self.source.header.size[0] as usize;
         let rows = r.len() / width;
-        let samples = self.source.next(rows)?;
         self.left = self.left.saturating_sub(rows);
-        let stride = width * usize::from(self.source.header.channels);
         for y in 0..rows {
             let out =
                 [&mut *r, &mut *g, &mut *b].map(|plane| &mut plane[y * width..(y + 1) * width]);
-            let range = y * stride..(y + 1) * stride;
-            match &samples {
+            let (samples, range) = self.source.next_row()?;
+            match samples {
                 Samples::U8(v) => self.converter.planes(&v[range], out),
                 Samples::U16(v) => self.converter.planes(&v[range], out),
                 Samples::F32(v) => self.converter.planes(&v[range], out),

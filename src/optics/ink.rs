@@ -18,7 +18,7 @@ use glam::{DVec3, DVec4};
 
 use super::{
     quadrature::{chebyshev, through},
-    refraction::{PathTable, crossed, ways_back},
+    refraction::{PathTable, WaysBack, crossed},
     table::InterfaceTable,
 };
 
@@ -144,9 +144,11 @@ struct Internal {
 impl Internal {
     /// The boundary's ways, scaled to the diffuse reflectance `r_i` of its energy-preserving table.
     fn new(n: f64, alpha: f64, r_i: f64) -> Self {
-        let mut ways = ways_back(alpha, n);
-        ways.iter_mut().for_each(|(_, share)| *share *= r_i);
-        Self { ways }
+        let back = WaysBack::new(alpha, n);
+        let scaled = |(way, share): &(f64, f64)| (*way, share * r_i);
+        Self {
+            ways: back.ways.iter().map(scaled).collect(),
+        }
     }
 
     /// ρ(τ) = ∫∫ e^(−τ(1/μ + 1/μ″)), weighted as the boundary sends diffuse light back.

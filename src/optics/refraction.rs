@@ -63,21 +63,36 @@ pub struct PathTable {
 /// The table at one roughness: coefficients of P·μ′ over powers of w, by powers of x.
 pub type PathRow = [DVec4; PATH_TERMS];
 
-/// The last tables made, by index: a table takes tens of milliseconds.
+/// The last tables made: a table takes tens of milliseconds.
 static MADE: Mutex<Vec<Arc<PathTable>>> = Mutex::new(Vec::new());
 /// How many are kept.
 const KEPT: usize = 8;
 
+/// What has been made already, or else is made now and kept.
+fn kept<T>(made: &Mutex<Vec<Arc<T>>>, is: impl Fn(&T) -> bool, make: impl FnOnce() -> T) -> Arc<T> {
+    // Each is whole or not there: nothing is left half done where a thread panicked.
+    let made = || made.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(own) = made().iter().find(|own| is(own)) {
+        return Arc::clone(own);
+    }
+    // Nothing is locked meanwhile: a thread that waits for others may be given work that asks for
+    // one too.
+    let own = Arc::new(make());
+    let mut made = made();
+    if made.len() >= KEPT {
+        made.remove(0);
+    }
+    made.push(Arc::clone(&own));
+    own
+}
+
 impl PathTable {
     /// For an interface of index `n` (≥ 1), for every roughness from [`ALPHA_FIT_MIN`] on.
     pub fn new(n: f64) -> Arc<Self> {
-        // A table is whole or not there: nothing is left half done where a thread panicked.
-        let made = || MADE.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(table) = made().iter().find(|table| table.n == n) {
-            return Arc::clone(table);
-        }
-        // Nothing is locked meanwhile: a thread that waits for others may be given work that asks
-        // for a table too.
+        kept(&MADE, |table| table.n == n, || Self::made(n))
+    }
+
+    fn made(n: f64) -> Self {
         let low = ALPHA_FIT_MIN.sqrt();
         let root = |u: f64| low + (1.0 - low) * u;
         let rows = chebyshev::<FIT_ALPHA>().map(|u| row_at(root(u).powi(2), n));
@@ -90,13 +105,7 @@ impl PathTable {
             let over_w: [[f64; ALPHA_TERMS]; TERMS] = std::array::from_fn(|j| over_s(k, j));
             std::array::from_fn(|i| DVec4::from_array(over_w.map(|over_s| over_s[i])))
         });
-        let table = Arc::new(Self { n, terms });
-        let mut made = made();
-        if made.len() >= KEPT {
-            made.remove(0);
-        }
-        made.push(Arc::clone(&table));
-        table
+        Self { n, terms }
     }
 
     /// The same at one roughness (in [0, 1]), whatever it is later asked for.
@@ -234,8 +243,29 @@ pub(super) fn sent_back_late(mu: f64, alpha: f64, n: f64, walks: u32) -> f64 {
 }
 
 /// Ways that diffuse light takes through a film of unit depth to the interface above it, from
-/// inside, and back: (1/μ + 1/μ″, share of what comes back), few enough to sum over.
-pub fn ways_back(alpha: f64, n: f64) -> Vec<(f64, f64)> {
+/// inside, and back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WaysBack {
+    alpha: f64,
+    n: f64,
+    /// 1/μ + 1/μ″ and the share of what comes back, few enough to sum over.
+    pub ways: Vec<(f64, f64)>,
+}
+
+impl WaysBack {
+    /// Of an interface of roughness `alpha` (in [0, 1]) and index `n` (≥ 1).
+    pub fn new(alpha: f64, n: f64) -> Arc<Self> {
+        static MADE: Mutex<Vec<Arc<WaysBack>>> = Mutex::new(Vec::new());
+        let make = || Self {
+            alpha,
+            n,
+            ways: ways_back(alpha, n),
+        };
+        kept(&MADE, |of| of.alpha == alpha && of.n == n, make)
+    }
+}
+
+fn ways_back(alpha: f64, n: f64) -> Vec<(f64, f64)> {
     const DIRECTIONS: u32 = 64;
     const WALKS: u32 = 8192;
     const BINS: usize = 128;

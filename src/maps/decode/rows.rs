@@ -4,6 +4,7 @@
 use std::{
     fs::File,
     io::{self, BufReader, BufWriter, Read, Seek, Write},
+    ops::Range,
     path::{Path, PathBuf},
 };
 
@@ -73,41 +74,37 @@ impl RowSource {
         })
     }
 
-    /// The samples of the next `rows` rows, interleaved.
-    pub fn next(&mut self, rows: usize) -> Result<Samples, MapError> {
-        let [width, _] = self.header.size;
-        let wanted = rows * width as usize * usize::from(self.header.channels);
-        let mut out = empty(self.kind);
-        while length(&out) < wanted {
-            if self.used == length(&self.ahead) {
-                self.ahead = self.more(wanted - length(&out))?;
-                self.used = 0;
-                if length(&self.ahead) == 0 {
-                    return Err(MapError::damaged(self.path(), "it ends too early"));
-                }
-            }
-            let take = (wanted - length(&out)).min(length(&self.ahead) - self.used);
-            let range = self.used..self.used + take;
-            match (&mut out, &self.ahead) {
-                (Samples::U8(out), Samples::U8(ahead)) => out.extend_from_slice(&ahead[range]),
-                (Samples::U16(out), Samples::U16(ahead)) => out.extend_from_slice(&ahead[range]),
-                (Samples::F32(out), Samples::F32(ahead)) => out.extend_from_slice(&ahead[range]),
-                _ => {
-                    let detail = "its channels contradict its header";
-                    return Err(MapError::damaged(self.path(), detail));
-                }
-            }
-            self.used += take;
+    /// The samples of the next row, interleaved: of all that is read and not asked for yet, which is
+    /// whole rows, those in this range.
+    pub fn next_row(&mut self) -> Result<(&Samples, Range<usize>), MapError> {
+        let row = self.row();
+        if self.used == length(&self.ahead) {
+            self.ahead = self.more(row)?;
+            self.used = 0;
         }
-        Ok(out)
+        let range = self.used..self.used + row;
+        if range.end > length(&self.ahead) {
+            return Err(MapError::damaged(self.path(), "it ends too early"));
+        }
+        if self.ahead.kind() != self.kind {
+            let detail = "its channels contradict its header";
+            return Err(MapError::damaged(self.path(), detail));
+        }
+        self.used = range.end;
+        Ok((&self.ahead, range))
+    }
+
+    /// Samples of a row.
+    fn row(&self) -> usize {
+        self.header.size[0] as usize * usize::from(self.header.channels)
     }
 
     /// Leaves the next `rows` rows out. Strips of which nothing is asked for are not read; what has
     /// to be read goes through memory a few rows at a time.
     pub fn skip(&mut self, rows: usize) -> Result<(), MapError> {
         const ROWS: usize = 64;
-        let [width, height] = self.header.size;
-        let row = width as usize * usize::from(self.header.channels);
+        let [_, height] = self.header.size;
+        let row = self.row();
         let mut left = rows * row;
         loop {
             let take = left.min(length(&self.ahead) - self.used);

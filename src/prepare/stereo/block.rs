@@ -1,6 +1,10 @@
 //! The arithmetic of many pixels at once: arrays of lanes that compilers turn into vector
 //! instructions.
 //!
+//! Most of a sheet's time goes into it. What calls these functions is compiled for wider vectors as
+//! well, by `pulp`, which are used where the processor has them; that holds for them where they are
+//! always inlined. What they find is the same.
+//!
 //! | symbol | meaning |
 //! |---|---|
 //! | `a` | a lamp's gain times its direction, as a pixel sees it |
@@ -14,7 +18,6 @@
 )]
 
 use glam::{DVec2, DVec3};
-use pulp::{Arch, Simd, WithSimd};
 
 use super::{
     response::{Paper, Response},
@@ -95,7 +98,23 @@ impl Lamps {
     }
 }
 
+/// The greatest of values that are not negative.
+#[inline(always)]
+pub fn most(values: &Lane) -> f32 {
+    let mut most = *values;
+    let mut half = LANES / 2;
+    while half > 0 {
+        let (below, above) = most.split_at_mut(half);
+        for (a, b) in below.iter_mut().zip(above) {
+            *a = a.max(*b);
+        }
+        half /= 2;
+    }
+    most[0]
+}
+
 /// g by least squares, all photographs alike.
+#[inline(always)]
 pub fn solve(lamps: &Lamps, v: &[Lane]) -> Lane3 {
     let Some(inverse) = &lamps.inverse else {
         return solve_weighted(lamps, v, None);
@@ -112,6 +131,7 @@ pub fn solve(lamps: &Lamps, v: &[Lane]) -> Lane3 {
 }
 
 /// g by least squares with weights, by the normal equations of each pixel.
+#[inline(always)]
 pub fn solve_weighted(lamps: &Lamps, v: &[Lane], w: Option<&[Lane]>) -> Lane3 {
     let zero = [0.0f32; LANES];
     let [mut xx, mut xy, mut xz, mut yy, mut yz, mut zz] = [zero; 6];
@@ -156,6 +176,7 @@ pub fn solve_weighted(lamps: &Lamps, v: &[Lane], w: Option<&[Lane]>) -> Lane3 {
 }
 
 /// The unit normals along g, upright where there is none, and not below the horizon.
+#[inline(always)]
 pub fn normals(g: &Lane3) -> Lane3 {
     let mut n = *g;
     for lane in 0..LANES {
@@ -175,6 +196,7 @@ pub fn normals(g: &Lane3) -> Lane3 {
 }
 
 /// n·l.
+#[inline(always)]
 pub fn cosine(n: &Lane3, l: &Lane3) -> Lane {
     let mut mu = [0.0; LANES];
     for lane in 0..LANES {
@@ -197,6 +219,7 @@ pub struct Leaving {
 
 impl Leaving {
     /// At normals `n`, for an eye straight above.
+    #[inline(always)]
     pub fn new(paper: &Paper, n: &Lane3) -> Self {
         let mut leaving = Self {
             mu: [0.0; LANES],
@@ -226,6 +249,7 @@ pub struct Seen {
 }
 
 /// The response to the lamp `i` at normals `n`, with n·l = `mu`, ink left out.
+#[inline(always)]
 pub fn response(
     paper: &Paper,
     n: &Lane3,
@@ -234,64 +258,29 @@ pub fn response(
     i: usize,
     mu: &Lane,
 ) -> Seen {
-    Arch::new().dispatch(Responding {
-        paper,
-        n,
-        leaving,
-        h: &lamps.h[i],
-        fresnel: &lamps.fresnel[i],
-        mu,
-    })
-}
-
-/// What [`response`] is found from. Half of a sheet's time goes into it: it is compiled for wider
-/// vectors as well, which are used where the processor has them. What it finds is the same.
-struct Responding<'r> {
-    paper: &'r Paper,
-    n: &'r Lane3,
-    leaving: &'r Leaving,
-    h: &'r Lane3,
-    fresnel: &'r Lane,
-    mu: &'r Lane,
-}
-
-impl WithSimd for Responding<'_> {
-    type Output = Seen;
-
-    // Else it would be compiled for the narrow ones.
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Seen {
-        let Self {
-            paper,
-            n,
-            leaving,
-            h,
-            fresnel,
-            mu,
-        } = self;
-        let mut seen = Seen {
-            diffuse: [0.0; LANES],
-            gloss: [0.0; LANES],
-        };
-        let alpha2 = paper.alpha * paper.alpha;
-        let over_pi = paper.specular * alpha2 / std::f32::consts::PI;
-        for lane in 0..LANES {
-            let mu_i = mu[lane].clamp(MU_FLOOR, 1.0);
-            let x = mu_i.sqrt();
-            seen.diffuse[lane] = polynomial(&paper.t, x) * leaving.t[lane];
-            // GGX with Smith's correlated masking, as d_ggx and v_smith of optics::microfacet.
-            let (hx, hy, hz) = (h[0][lane], h[1][lane], h[2][lane]);
-            let (nx, ny, nz) = (n[0][lane], n[1][lane], n[2][lane]);
-            let (cx, cy, cz) = (ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx);
-            let sin2 = (cx * cx + cy * cy + cz * cz).min(1.0);
-            let spread = alpha2 + sin2 * (1.0 - alpha2);
-            let masked = (alpha2 + (1.0 - alpha2) * mu_i * mu_i).sqrt();
-            let way = 2.0 * (leaving.mu[lane] * masked + mu_i * leaving.masked[lane]);
-            let late = polynomial(&paper.late, x) * leaving.late[lane];
-            seen.gloss[lane] = over_pi * fresnel[lane] / (spread * spread * way) + late;
-        }
-        seen
+    let mut seen = Seen {
+        diffuse: [0.0; LANES],
+        gloss: [0.0; LANES],
+    };
+    let alpha2 = paper.alpha * paper.alpha;
+    let over_pi = paper.specular * alpha2 / std::f32::consts::PI;
+    let (h, fresnel) = (&lamps.h[i], &lamps.fresnel[i]);
+    for lane in 0..LANES {
+        let mu_i = mu[lane].clamp(MU_FLOOR, 1.0);
+        let x = mu_i.sqrt();
+        seen.diffuse[lane] = polynomial(&paper.t, x) * leaving.t[lane];
+        // GGX with Smith's correlated masking, as d_ggx and v_smith of optics::microfacet.
+        let (hx, hy, hz) = (h[0][lane], h[1][lane], h[2][lane]);
+        let (nx, ny, nz) = (n[0][lane], n[1][lane], n[2][lane]);
+        let (cx, cy, cz) = (ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx);
+        let sin2 = (cx * cx + cy * cy + cz * cz).min(1.0);
+        let spread = alpha2 + sin2 * (1.0 - alpha2);
+        let masked = (alpha2 + (1.0 - alpha2) * mu_i * mu_i).sqrt();
+        let way = 2.0 * (leaving.mu[lane] * masked + mu_i * leaving.masked[lane]);
+        let late = polynomial(&paper.late, x) * leaving.late[lane];
+        seen.gloss[lane] = over_pi * fresnel[lane] / (spread * spread * way) + late;
     }
+    seen
 }
 
 #[inline(always)]

@@ -35,6 +35,7 @@ pub struct Depth<'f> {
 
 impl<'f> Depth<'f> {
     /// At places of this albedo, the surface's share taken out, seen at cosines `mu_o`.
+    #[inline(always)]
     pub fn new(film: &'f Film, albedo: &Lane3, mu_o: &Lane) -> Self {
         let zero = [0.0; LANES];
         let mut depth = Self {
@@ -82,6 +83,7 @@ impl<'f> Depth<'f> {
     }
 
     /// P at these cosines.
+    #[inline(always)]
     fn path(&self, mu: &Lane) -> Lane {
         let mut path = [0.0; LANES];
         let Film {
@@ -103,6 +105,7 @@ impl<'f> Depth<'f> {
     }
 
     /// P(μ_i) + P(μ_o) − P_c for light at cosines `mu`.
+    #[inline(always)]
     pub fn beyond_capture(&self, mu: &Lane) -> Lane {
         let mut path = self.path(mu);
         for lane in 0..LANES {

@@ -7,6 +7,7 @@
 )]
 
 use glam::DVec2;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::{
     Rows, Solver,
@@ -245,6 +246,16 @@ impl Block {
 
     /// The normal times the albedo; leaves in `plain` what a diffuser would show.
     fn facing(&mut self, solver: &Solver, lamps: &Lamps, w: Option<&[Lane]>) -> Lane3 {
+        Arch::new().dispatch(Facing {
+            block: self,
+            solver,
+            lamps,
+            w,
+        })
+    }
+
+    #[inline(always)]
+    fn wide_facing(&mut self, solver: &Solver, lamps: &Lamps, w: Option<&[Lane]>) -> Lane3 {
         let solve = |v: &[Lane]| match w {
             None => block::solve(lamps, v),
             some => block::solve_weighted(lamps, v, some),
@@ -267,25 +278,26 @@ impl Block {
             for i in 0..lamps.count() {
                 let mu = cosine(&n, &lamps.l[i]);
                 let seen = block::response(paper, &n, &leaving, lamps, i, &mu);
+                let (grey, gain) = (&self.grey[i], &lamps.gain[i]);
+                let (gleaming, plain) = (&mut self.gleaming[i], &mut self.plain[i]);
                 for lane in 0..LANES {
-                    let grey = self.grey[i][lane];
-                    let gleam = lamps.gain[i][lane] * mu[lane].max(0.0) * seen.gloss[lane];
-                    let share = (gleam / grey.max(1e-6)).clamp(0.0, MOST_GLEAM);
-                    let share = share + kept * (self.gleaming[i][lane] - share);
-                    self.gleaming[i][lane] = share;
-                    self.plain[i][lane] = grey * (1.0 - share) / seen.diffuse[lane].max(0.3);
+                    let gleam = gain[lane] * mu[lane].max(0.0) * seen.gloss[lane];
+                    let share = (gleam / grey[lane].max(1e-6)).clamp(0.0, MOST_GLEAM);
+                    let share = share + kept * (gleaming[lane] - share);
+                    gleaming[lane] = share;
+                    plain[lane] = grey[lane] * (1.0 - share) / seen.diffuse[lane].max(0.3);
                 }
             }
             let next = solve(&self.plain);
-            let (mut moved, mut length) = (0.0f32, 0.0f32);
+            let (mut moved, mut length) = ([0.0f32; LANES], [0.0f32; LANES]);
             for c in 0..3 {
                 for lane in 0..LANES {
-                    moved = moved.max((next[c][lane] - g[c][lane]).abs());
-                    length = length.max(next[c][lane].abs());
+                    moved[lane] = moved[lane].max((next[c][lane] - g[c][lane]).abs());
+                    length[lane] = length[lane].max(next[c][lane].abs());
                 }
             }
             g = next;
-            if moved < STILL * length {
+            if block::most(&moved) < STILL * block::most(&length) {
                 break;
             }
         }
@@ -316,6 +328,23 @@ impl Block {
 
     /// For each colour the least squares with the normal known.
     fn albedo(&self, solver: &Solver, lamps: &Lamps, normal: &Lane3, w: Option<&[Lane]>) -> Lane3 {
+        Arch::new().dispatch(Albedo {
+            block: self,
+            solver,
+            lamps,
+            normal,
+            w,
+        })
+    }
+
+    #[inline(always)]
+    fn wide_albedo(
+        &self,
+        solver: &Solver,
+        lamps: &Lamps,
+        normal: &Lane3,
+        w: Option<&[Lane]>,
+    ) -> Lane3 {
         let mut along = [[0.0f32; LANES]; 3];
         let mut square = [0.0f32; LANES];
         let paper = solver.response.paper();
@@ -327,8 +356,9 @@ impl Block {
                 .map(|(paper, leaving)| block::response(paper, normal, leaving, lamps, i, &mu));
             let mut factor = [0.0f32; LANES];
             let mut gleam = [0.0f32; LANES];
+            let gain = &lamps.gain[i];
             for lane in 0..LANES {
-                factor[lane] = lamps.gain[i][lane] * mu[lane].max(0.0);
+                factor[lane] = gain[lane] * mu[lane].max(0.0);
             }
             if let Some(seen) = &seen {
                 for lane in 0..LANES {
@@ -358,5 +388,47 @@ impl Block {
             }
         }
         along
+    }
+}
+
+/// [`Block::facing`], with the widest vectors that there are.
+struct Facing<'b> {
+    block: &'b mut Block,
+    solver: &'b Solver,
+    lamps: &'b Lamps,
+    w: Option<&'b [Lane]>,
+}
+
+impl WithSimd for Facing<'_> {
+    type Output = Lane3;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Lane3 {
+        self.block.wide_facing(self.solver, self.lamps, self.w)
+    }
+}
+
+/// [`Block::albedo`], likewise.
+struct Albedo<'b> {
+    block: &'b Block,
+    solver: &'b Solver,
+    lamps: &'b Lamps,
+    normal: &'b Lane3,
+    w: Option<&'b [Lane]>,
+}
+
+impl WithSimd for Albedo<'_> {
+    type Output = Lane3;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Lane3 {
+        let Self {
+            block,
+            solver,
+            lamps,
+            normal,
+            w,
+        } = self;
+        block.wide_albedo(solver, lamps, normal, w)
     }
 }

@@ -11,6 +11,8 @@
     reason = "several arrays run along one index, as their formulas do"
 )]
 
+use pulp::{Arch, Simd, WithSimd};
+
 use super::{
     block::{self, LANES, Lamps, Lane, Lane3, Leaving, cosine},
     film::Depth,
@@ -112,6 +114,11 @@ type Light = Vec<[Lane3; 2]>;
 impl Task<'_> {
     /// What photographs should show.
     fn light(&self, found: &Found) -> Light {
+        Arch::new().dispatch(Lit { task: self, found })
+    }
+
+    #[inline(always)]
+    fn wide_light(&self, found: &Found) -> Light {
         let n = found.normals();
         let leaving = Leaving::new(self.paper, &n);
         let film = self.paper.film.as_ref();
@@ -317,6 +324,21 @@ impl Task<'_> {
     }
 }
 
+/// [`Task::light`], with the widest vectors that there are.
+struct Lit<'l> {
+    task: &'l Task<'l>,
+    found: &'l Found,
+}
+
+impl WithSimd for Lit<'_> {
+    type Output = Light;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Light {
+        self.task.wide_light(self.found)
+    }
+}
+
 fn noise(shown: f32) -> f32 {
     NOISE[0] + NOISE[1] * shown.max(0.0)
 }
@@ -332,6 +354,7 @@ const TWO_TO: [f32; 6] = [
 ];
 
 /// e^x within 1e-6 of it for |x| < 80, in few operations that compilers vectorise.
+#[inline(always)]
 fn exp(x: f32) -> f32 {
     let scaled = x.clamp(-80.0, 80.0) * std::f32::consts::LOG2_E;
     let whole = scaled.floor();
