@@ -38,7 +38,8 @@ impl Tally {
                 let brightest = r.max(*g).max(*b);
                 clipped += u32::from(brightest >= CLIPPED);
                 unknown += u32::from(!(r + g + b).is_finite());
-                *most = brightest.max(0.0);
+                // Of floats that are no light, the sum of many would be no number.
+                *most = brightest.clamp(0.0, 1e30);
             }
             self.count += r.len() as u64;
             self.clipped += u64::from(if is_float { 0 } else { clipped });

@@ -12,8 +12,8 @@ use crate::maps::{ColourEncoding, ColourRows, MapError};
 const BAND_BYTES: usize = 8 << 20;
 /// More, so that there are rows for every processor.
 const BAND_ROWS: usize = 64;
-/// But not more than this.
-const MOST_BYTES: usize = 96 << 20;
+/// But not more than this: two bands are held at once, one being read and one solved.
+const MOST_BYTES: usize = 48 << 20;
 /// And one of a photograph that is read by itself, as each processor may read one.
 const SINGLE_BYTES: usize = 8 << 20;
 /// Bytes of one pixel of one photograph.
@@ -153,7 +153,8 @@ impl Stack {
         Ok(())
     }
 
-    /// Of so many rows (1 or more) one is read from now on, from the first one that is left.
+    /// Of so many rows (1 or more) one is read from now on, from the first one that is left. Not
+    /// together with [`Self::reduce`], which needs all of them.
     pub fn thin(&mut self, step: usize) {
         self.step = step;
     }

@@ -124,7 +124,7 @@ impl Squares {
     fn add(&mut self, row: [&[f32]; 3], whole: impl FnOnce([&[f32]; 3])) {
         for (sums, pixels) in self.sums.iter_mut().zip(row) {
             for (sum, pixels) in sums.iter_mut().zip(pixels.chunks_exact(self.step)) {
-                *sum += sum_of(pixels);
+                *sum += pixels.iter().sum::<f32>();
             }
         }
         self.rows += 1;

@@ -23,7 +23,7 @@ use super::{
     relief::{
         compare::{Comparison, range, remove_plane},
         filter::{Coarse, Split, split},
-        integrate::{Perimeter, Slopes, integrate, integrate_free, integrate_robust},
+        integrate::{Perimeter, Slopes, integrate, integrate_level, integrate_robust},
         surface,
     },
     report,
@@ -370,7 +370,7 @@ fn prepare_side(
         }
         _ => None,
     };
-    let surface = maps.shape(&shape, width)?;
+    let surface = maps.shape(&shape, width, shape_um)?;
     drop(shape);
     tell("relief", 0.8);
     let slopes = Slopes::of_normals(&small, size[0]);
@@ -384,7 +384,7 @@ fn prepare_side(
     written?;
     let grain_um = extent(&grain);
     tell("writing maps", 0.9);
-    let text = maps.grain(&grain, surface)?;
+    let text = maps.grain(&grain, grain_um, surface)?;
     let report = SideReport {
         side,
         size,
@@ -410,7 +410,12 @@ fn heights(slopes: Slopes, um_per_px: f64, how: Integration) -> Vec<f64> {
     const USUAL: f64 = 0.01;
     let width = slopes.width;
     let mut heights = match how {
-        Integration::Free => integrate_free(slopes),
+        Integration::Free => {
+            // Its plane would be taken out again.
+            let mut heights = integrate_level(slopes, um_per_px);
+            remove_plane(&mut heights, width);
+            return heights;
+        }
         Integration::Anchored => integrate(&slopes, Perimeter::Anchored),
         Integration::Robust => integrate_robust(&slopes, USUAL),
     };

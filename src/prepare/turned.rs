@@ -95,6 +95,16 @@ mod tests {
     }
 
     #[test]
+    fn of_a_large_sheet_some_rows_tell() {
+        // The same hills nine times beside and below each other.
+        let small = normals(0.2, 0.02, 1);
+        let rows = (0..9 * 80).map(|y| &small[y % 80 * 96..(y % 80 + 1) * 96]);
+        let large: Vec<[f32; 3]> = rows.flat_map(|row| row.repeat(9)).collect();
+        assert!(large.len() > 2 * LOOKED_AT);
+        assert!(by_a_quarter(&large, 9 * 96));
+    }
+
+    #[test]
     fn a_quarter_is_seen_and_nothing_else_is_taken_for_one() {
         for quarters in 0..4 {
             let turned = by_a_quarter(&normals(0.2, 0.05, quarters), 96);

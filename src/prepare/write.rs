@@ -16,7 +16,7 @@ use super::{
     lights,
     materials::legend::{self, MediaFile},
     matter,
-    relief::{compare::range, surface},
+    relief::surface,
     report,
     run::{LampFound, Report, SideReport},
     verso::Place,
@@ -157,10 +157,10 @@ impl<'s> SideFiles<'s> {
         self.preview("normal", self.size[0], &at, encoded.len())
     }
 
-    /// Writes the shape at large in µm, and gives the lines of a manifest about it; the recto's
-    /// alone is the sheet's.
-    pub fn shape(&self, um: &[f64], width: usize) -> Result<String, PrepareError> {
-        let levels = Levels::new(um);
+    /// Writes the shape at large in µm, which is within `range`, and gives the lines of a manifest
+    /// about it; the recto's alone is the sheet's.
+    pub fn shape(&self, um: &[f64], width: usize, range: [f64; 2]) -> Result<String, PrepareError> {
+        let levels = Levels::new(um, range);
         let at = |i: usize| [(levels.values[i] >> 8) as u8; 3];
         self.preview("shape", width, &at, um.len())?;
         if self.side == SideName::Verso {
@@ -179,10 +179,15 @@ impl<'s> SideFiles<'s> {
         ))
     }
 
-    /// Writes heights of grain and strokes in µm, the last of the maps, and gives the lines of a
-    /// manifest about the side.
-    pub fn grain(self, um: &[f64], surface: String) -> Result<SideText, PrepareError> {
-        let levels = Levels::new(um);
+    /// Writes heights of grain and strokes in µm, which are within `range`, the last of the maps,
+    /// and gives the lines of a manifest about the side.
+    pub fn grain(
+        self,
+        um: &[f64],
+        range: [f64; 2],
+        surface: String,
+    ) -> Result<SideText, PrepareError> {
+        let levels = Levels::new(um, range);
         self.grey16(&self.within.join("height.png"), &levels.values)?;
         Ok(SideText {
             side: self.side,
@@ -273,9 +278,9 @@ struct Levels {
 }
 
 impl Levels {
-    fn new(um: &[f64]) -> Self {
+    /// Of heights within a range.
+    fn new(um: &[f64], [low, high]: [f64; 2]) -> Self {
         // To a hundredth, as it is written, and never without extent.
-        let [low, high] = range(um, [0.0, 1.0]).unwrap_or_default();
         let low = (low.min(0.0) * 100.0).floor() / 100.0;
         let high = ((high.max(0.0) * 100.0).ceil() / 100.0).max(low + 0.01);
         let scale = 65535.0 / (high - low);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use recto::{
-    maps::{self, ColourEncoding, encode},
+    maps::{self, ColourEncoding, ColourRows, encode},
     prepare::{
         capture::Crop,
         flat_field::{FlatField, FlatFieldError},
@@ -114,7 +114,12 @@ fn a_thin_stack_holds_every_so_manieth_row() {
         right: 90,
         bottom: 60,
     };
-    for step in [1, 2, 3, 4, 5, 9, 52, 53, 60] {
+    // To the lower edge, where the last strip has one row, and not.
+    for (bottom, step) in [60, 61]
+        .into_iter()
+        .flat_map(|bottom| [1, 2, 3, 4, 5, 9, 52, 53, 60].map(|step| (bottom, step)))
+    {
+        let crop = Crop { bottom, ..crop };
         let ambient = Some(paths[0].as_path());
         let mut stack =
             Stack::open(&paths[1..], ambient, encoding, crop, folder.path()).expect("a stack");
@@ -150,6 +155,67 @@ fn a_thin_stack_holds_every_so_manieth_row() {
                 assert!(found == expected, "{} {step} {row}", path.display());
             }
         }
+    }
+}
+
+#[test]
+fn bands_of_a_thin_stack_follow_each_other() {
+    let folder = folder();
+    // So wide that a band has 64 rows.
+    let (width, height) = (5500, 300);
+    let path = folder.path().join("wide.tif");
+    let value = |x: usize, y: usize| ((x * 7 + y * 211) % 65536) as u16;
+    let pixels: Vec<u16> = (0..width * height)
+        .map(|i| value(i % width, i / width))
+        .collect();
+    let mut file = std::fs::File::create(&path).expect("a file");
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut file).expect("a TIFF");
+    let mut image = encoder
+        .new_image::<tiff::encoder::colortype::Gray16>(width as u32, height as u32)
+        .expect("an image");
+    image.rows_per_strip(7).expect("strips");
+    image.write_data(&pixels).expect("written");
+    drop(file);
+    let grey = folder.path().join("grey.png");
+    encode::save_png_grey16(&grey, 5500, 300, &vec![32768; width * height], None).expect("written");
+    let (paths, crop) = ([path.clone(), path], whole(&grey));
+    let encoding = ColourEncoding::Linear;
+    // Half of the light is divided out.
+    let field = FlatField::read(&grey, None, encoding, crop, 1.0, folder.path()).expect("a card");
+    let mut stack = Stack::open(&paths, None, encoding, crop, folder.path()).expect("a stack");
+    stack.thin(2);
+    let (mut rows, mut bands) = (0, 0);
+    while let Some(mut band) = stack.next().expect("a band") {
+        band.divide(&[field.clone(), field.clone()]);
+        for row in 0..band.rows {
+            assert_eq!(band.y(row), 2 * rows);
+            for (x, found) in band.row(1, row)[2].iter().enumerate() {
+                let shown = f32::from(value(x, 2 * rows)) / 32768.0;
+                assert!((found - shown).abs() < 1e-3, "{x} {rows}: {found}");
+            }
+            rows += 1;
+        }
+        bands += 1;
+        stack.recycle(band);
+    }
+    assert_eq!((rows, bands), (150, 3));
+}
+
+#[test]
+fn what_is_left_out_beyond_the_lower_edge_is_told() {
+    let folder = folder();
+    for path in formats(folder.path()) {
+        let open = || ColourRows::open(&path, ColourEncoding::Linear, folder.path()).expect("rows");
+        let mut planes = [const { [0.0; 97] }; 3];
+        let mut rows = open();
+        rows.skip(60).expect("all but the last row");
+        rows.read(planes.each_mut().map(|plane| &mut plane[..]))
+            .expect("the last row");
+        let mut rows = open();
+        let beyond = rows
+            .skip(64)
+            .and_then(|()| rows.read(planes.each_mut().map(|plane| &mut plane[..])));
+        assert!(beyond.is_err(), "{}", path.display());
     }
 }
 

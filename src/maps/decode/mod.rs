@@ -50,6 +50,17 @@ pub(super) enum Kind {
     F32,
 }
 
+impl Kind {
+    /// Of one value.
+    fn bytes(self) -> usize {
+        match self {
+            Self::U8 => 1,
+            Self::U16 => 2,
+            Self::F32 => 4,
+        }
+    }
+}
+
 impl Samples {
     pub fn kind(&self) -> Kind {
         match self {

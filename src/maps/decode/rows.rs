@@ -113,16 +113,25 @@ impl RowSource {
             if left == 0 {
                 return Ok(());
             }
-            if let Source::Tiff { tiff, strip } = &mut self.source {
-                let rows = tiff.strip_rows();
-                // The last strip may have fewer rows.
-                while left >= rows as usize * row && (*strip + 1) * rows <= height {
-                    left -= rows as usize * row;
-                    *strip += 1;
+            match &mut self.source {
+                Source::Tiff { tiff, strip } => {
+                    let rows = tiff.strip_rows();
+                    // The last strip may have fewer rows.
+                    while left >= rows as usize * row && (*strip + 1) * rows <= height {
+                        left -= rows as usize * row;
+                        *strip += 1;
+                    }
+                    if left == 0 {
+                        return Ok(());
+                    }
                 }
-                if left == 0 {
-                    return Ok(());
+                Source::Spooled { path, file } => {
+                    // Beyond the end nothing can be read, which is told then.
+                    let bytes = (left * self.kind.bytes()) as i64;
+                    let sought = file.seek_relative(bytes);
+                    return sought.map_err(|error| MapError::read(path, error));
                 }
+                Source::Png(_) => {}
             }
             self.ahead = self.more(left.min(ROWS * row))?;
             self.used = 0;

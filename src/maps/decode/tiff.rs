@@ -137,13 +137,15 @@ impl TiffPicture {
         /// Of one strip.
         const MOST_BYTES: u64 = 16 << 20;
         let (width, height) = self.decoder.chunk_dimensions();
-        let samples = u64::from(width) * u64::from(height) * u64::from(self.header.channels);
+        let pixel = u64::from(self.header.channels) * u64::from(self.header.bits / 8);
+        // A file may say anything of its strips.
+        let bytes = (u64::from(width) * u64::from(height)).checked_mul(pixel);
         !self.planar
             && !self.header.float
             && !self.premultiplied
             && self.stored_bits >= 8
             && width == self.header.size[0]
-            && samples * u64::from(self.header.bits / 8) <= MOST_BYTES
+            && bytes.is_some_and(|bytes| bytes <= MOST_BYTES)
             && self.decoder.get_chunk_type() == ChunkType::Strip
             && self.orientation == Orientation::default()
     }

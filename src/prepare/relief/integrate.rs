@@ -112,20 +112,41 @@ pub fn integrate(slopes: &Slopes, perimeter: Perimeter) -> Vec<f64> {
 /// they take as much memory as its heights. They are the least squares, term by term.
 pub fn integrate_free(slopes: Slopes) -> Vec<f64> {
     let (width, height) = (slopes.width, slopes.height());
+    let [tilt_x, tilt_y] = [mean(&slopes.right), mean(&slopes.down)];
+    let mut h = integrate_level(slopes, 1.0);
+    let (middle_x, middle_y) = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
+    let rows = h.par_chunks_mut(width.max(1)).enumerate();
+    rows.for_each(|(y, row)| {
+        for (x, value) in row.iter_mut().enumerate() {
+            *value += tilt_x * (x as f64 - middle_x) + tilt_y * (y as f64 - middle_y);
+        }
+    });
+    h
+}
+
+fn mean(values: &[f32]) -> f64 {
+    let sum: f64 = values.iter().map(|v| f64::from(*v)).sum();
+    sum / values.len().max(1) as f64
+}
+
+/// As [`integrate_free`] without the plane of the mean slopes, times `unit`.
+pub fn integrate_level(slopes: Slopes, unit: f64) -> Vec<f64> {
+    let (width, height) = (slopes.width, slopes.height());
     if width == 0 || height == 0 {
         return Vec::new();
     }
     let Slopes { right, down, .. } = slopes;
-    let mean = |v: &[f32]| v.iter().map(|v| f64::from(*v)).sum::<f64>() / v.len() as f64;
-    let (tilt_x, tilt_y) = (mean(&right), mean(&down));
     let lines = |kind| [Line::new(kind, width), Line::new(kind, height)];
     let (cosine, slope) = (lines(Kind::Cosine), lines(Kind::Slope));
-    let without = |v: Vec<f32>, tilt: f64| -> Vec<f64> {
-        v.par_iter().map(|v| f64::from(*v) - tilt).collect()
+    let without_mean = |v: Vec<f32>| -> Vec<f64> {
+        let mean = mean(&v);
+        v.par_iter()
+            .map(|v| (f64::from(*v) - mean) * unit)
+            .collect()
     };
-    let mut h = without(right, tilt_x);
+    let mut h = without_mean(right);
     transform(&mut h, width, [&slope[0], &cosine[1]], false);
-    let mut down = without(down, tilt_y);
+    let mut down = without_mean(down);
     transform(&mut down, width, [&cosine[0], &slope[1]], false);
     let (across, along) = (cosine[0].frequencies(), cosine[1].frequencies());
     h.par_chunks_mut(width)
@@ -143,12 +164,6 @@ pub fn integrate_free(slopes: Slopes) -> Vec<f64> {
         });
     drop(down);
     transform(&mut h, width, cosine.each_ref(), true);
-    let (middle_x, middle_y) = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
-    h.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-        for (x, value) in row.iter_mut().enumerate() {
-            *value += tilt_x * (x as f64 - middle_x) + tilt_y * (y as f64 - middle_y);
-        }
-    });
     h
 }
 

@@ -1,9 +1,10 @@
 //! The arithmetic of many pixels at once: arrays of lanes that compilers turn into vector
 //! instructions.
 //!
-//! Most of a sheet's time goes into it. What calls these functions is compiled for wider vectors as
-//! well, by `pulp`, which are used where the processor has them; that holds for them where they are
-//! always inlined. What they find is the same.
+//! Most of a sheet's time goes into it. Those that call these functions most ([`super::fit`]'s
+//! `facing` and `albedo`, [`super::refine`]'s `light`) are compiled for vectors of 256 bits as well, by
+//! `pulp`, which are used where the processor has them: what they call has to be inlined for that. What
+//! is found is the same.
 //!
 //! | symbol | meaning |
 //! |---|---|

@@ -391,7 +391,7 @@ impl Block {
     }
 }
 
-/// [`Block::facing`], with the widest vectors that there are.
+/// [`Block::facing`], in wide vectors where the processor has them.
 struct Facing<'b> {
     block: &'b mut Block,
     solver: &'b Solver,

@@ -71,6 +71,7 @@ impl Found {
     }
 
     /// Unit normals.
+    #[inline(always)]
     pub fn normals(&self) -> Lane3 {
         let [p, q] = &self.slopes;
         let mut n = [[0.0; LANES]; 3];
@@ -324,7 +325,7 @@ impl Task<'_> {
     }
 }
 
-/// [`Task::light`], with the widest vectors that there are.
+/// [`Task::light`], in wide vectors where the processor has them.
 struct Lit<'l> {
     task: &'l Task<'l>,
     found: &'l Found,
