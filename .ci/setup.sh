@@ -119,5 +119,11 @@ mkdir -p "$CARGO_TARGET_DIR"
 echo "$PWD" >"$owner"
 # A test target has to be named: it switches on the features that tests ask of shared crates.
 # The program alone would be built with others, and `cargo test` would then build Bevy again.
-cargo build --release --locked --bin recto --test cli
+# Before the whole suite all of them are built at once: Recto is compiled in one piece, by one processor,
+# and by another one for its unit tests.
+if [ -n "${for_tests:-}" ] && [ $# -eq 0 ]; then
+    cargo build --release --locked --bin recto --tests
+else
+    cargo build --release --locked --bin recto --test cli
+fi
 recto=$CARGO_TARGET_DIR/release/recto
