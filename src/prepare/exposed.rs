@@ -38,8 +38,10 @@ impl Tally {
                 let brightest = r.max(*g).max(*b);
                 clipped += u32::from(brightest >= CLIPPED);
                 unknown += u32::from(!(r + g + b).is_finite());
-                // Of floats that are no light, the sum of many would be no number.
-                *most = brightest.clamp(0.0, 1e30);
+                // What is no number counts as none, which `clamp` would keep; and the sum of many
+                // floats that are no light would be no number.
+                let light = brightest.max(0.0);
+                *most = light.min(1e30);
             }
             self.count += r.len() as u64;
             self.clipped += u64::from(if is_float { 0 } else { clipped });
@@ -146,6 +148,8 @@ mod tests {
             tally(&gleaming, false),
             tally(&holed, true),
         ];
+        assert!(tallies.iter().all(|tally| tally.light.is_finite()));
+        assert!(tally(&[3e38; 600], true).light.is_finite());
         let unusable = check(&paths, &tallies).expect_err("two of them");
         assert_eq!(unusable.len(), 2);
         assert!(matches!(&unusable[0], Unusable::Black(path) if path.ends_with("b")));
