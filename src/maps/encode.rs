@@ -259,11 +259,12 @@ fn save_png16(
         samples.len(),
         dpi,
         |out| {
-            let mut bytes = Vec::with_capacity(2 * CHUNK);
+            let mut bytes = vec![[0; 2]; CHUNK];
             for chunk in samples.chunks(CHUNK) {
-                bytes.clear();
-                bytes.extend(chunk.iter().flat_map(|v| v.to_be_bytes()));
-                out.write_all(&bytes)?;
+                for (bytes, sample) in bytes.iter_mut().zip(chunk) {
+                    *bytes = sample.to_be_bytes();
+                }
+                out.write_all(bytes[..chunk.len()].as_flattened())?;
             }
             Ok(())
         },

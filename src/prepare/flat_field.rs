@@ -20,6 +20,8 @@ use super::capture::Crop;
 const CELLS: usize = 64;
 /// The smallest side of a cell in pixels: what noise and texture are averaged over.
 const LEAST_PX: usize = 8;
+/// Rows of a cell that are enough to average over.
+const ROWS: usize = 40;
 /// The darkest cell over the brightest: below, division makes more noise than light.
 const DARKEST: f64 = 0.02;
 /// Linear light from which a channel counts as clipped.
@@ -81,6 +83,7 @@ impl FlatField {
         let size = [crop.width(), crop.height()];
         let longer = size[0].max(size[1]);
         let side = longer.div_ceil(CELLS).max(LEAST_PX);
+        stack.thin((side / ROWS).max(1));
         let cells = size.map(|pixels| (pixels / side).max(1));
         let step = [0, 1].map(|i| size[i] as f64 / cells[i] as f64);
         // The first column whose middle lies in each cell, and the end.
@@ -96,10 +99,10 @@ impl FlatField {
             .collect();
         let mut sums = vec![[0.0f64; 4]; cells[0] * cells[1]];
         let mut clipped = 0u64;
-        let mut y = 0;
+        let mut count = 0;
         while let Some(band) = stack.next()? {
             for row in 0..band.rows {
-                let cell_y = (((y as f64 + 0.5) / step[1]) as usize).min(cells[1] - 1);
+                let cell_y = (((band.y(row) as f64 + 0.5) / step[1]) as usize).min(cells[1] - 1);
                 let planes = band.row(0, row);
                 for (cell, edge) in edges.windows(2).enumerate() {
                     let sum = &mut sums[cell_y * cells[0] + cell];
@@ -122,11 +125,11 @@ impl FlatField {
                     });
                     clipped += over.count() as u64;
                 }
-                y += 1;
             }
+            count += band.rows * band.width;
             stack.recycle(band);
         }
-        let share = clipped as f64 / (size[0] * size[1]) as f64;
+        let share = clipped as f64 / count as f64;
         if share > CLIPPED_SHARE && !stack.is_float() {
             return Err(FlatFieldError::Saturated {
                 path: path.display().to_string(),

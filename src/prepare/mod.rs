@@ -22,6 +22,7 @@
 //! | these four for a side | [`matter`] |
 //! | a verso's place on its recto | [`verso`] |
 //! | the photographs of a side, run through once: normals, albedo, and the rest | `solve`, `albedo` |
+//! | its normals → shape at large, grain and strokes | `shape` |
 //! | what the photographs leave over, counted | [`residuals`] |
 //! | all of it, as a command does it | [`run`] |
 //! | what came of it: a verdict, plots and pictures on one page | [`report`] |
@@ -49,6 +50,7 @@ pub mod relief;
 pub mod report;
 pub mod residuals;
 mod run;
+mod shape;
 mod solve;
 mod stage;
 pub mod stereo;

@@ -33,20 +33,14 @@ pub enum StackError {
 
 /// Photographs of one size.
 pub struct Stack {
-    readers: Vec<ColourRows>,
-    ambient: Option<ColourRows>,
+    photographs: Vec<Photograph>,
+    ambient: Option<Photograph>,
     crop: Crop,
     /// Rows of the crop that have been read.
     done: usize,
     band_rows: usize,
     /// Of so many rows one is read.
     step: usize,
-    /// Planes of bands that are done with: memory that is given back has to be cleared again.
-    spare: Vec<[Vec<f32>; 3]>,
-    /// Of each photograph, where it was asked for.
-    greys: Vec<Grey>,
-    /// The same.
-    tallies: Vec<Tally>,
 }
 
 /// Rows of all photographs of a stack.
@@ -74,19 +68,107 @@ impl Band {
             .each_ref()
             .map(|plane| &plane[range.clone()])
     }
+}
 
-    /// Divides each photograph by its lamp's light; leaves them as they are without `fields`.
-    pub fn divide(&mut self, fields: &[FlatField]) {
-        let (rows, width, top, step) = (self.rows, self.width, self.top, self.step);
-        let photographs = self.planes.par_iter_mut().zip(fields);
-        photographs.for_each(|(planes, field)| {
-            let [r, g, b] = planes;
-            for row in 0..rows {
-                let range = row * width..(row + 1) * width;
-                let planes = [&mut r[range.clone()], &mut g[range.clone()], &mut b[range]];
-                field.divide(top + row * step, planes);
+/// A photograph, and what is done with each of its rows as soon as it is read, while caches hold it.
+struct Photograph {
+    reader: ColourRows,
+    /// Planes of a band that is done with: memory that is given back has to be cleared again.
+    spare: [Vec<f32>; 3],
+    /// Where it was asked for, as are the others.
+    grey: Option<Grey>,
+    tally: Option<Tally>,
+    /// What it is divided by.
+    field: Option<FlatField>,
+}
+
+/// Rows that are to be read.
+#[derive(Clone, Copy)]
+struct Wanted {
+    crop: Crop,
+    /// The first one, counted from the top of the crop.
+    top: usize,
+    rows: usize,
+    /// From one to the next.
+    step: usize,
+}
+
+impl Photograph {
+    fn open(
+        path: &Path,
+        encoding: ColourEncoding,
+        crop: Crop,
+        scratch: &Path,
+    ) -> Result<Self, StackError> {
+        let reader = ColourRows::open(path, encoding, scratch)?;
+        let [width, height] = reader.header().size;
+        if width < crop.right || height < crop.bottom {
+            return Err(StackError::Changed {
+                path: path.to_owned(),
+                found: format!("{width} × {height}"),
+            });
+        }
+        Ok(Self {
+            reader,
+            spare: Default::default(),
+            grey: None,
+            tally: None,
+            field: None,
+        })
+    }
+
+    /// Planes of the next rows, less what `ambient` shows there.
+    fn read(
+        &mut self,
+        wanted: Wanted,
+        ambient: Option<&[Vec<f32>; 3]>,
+    ) -> Result<[Vec<f32>; 3], MapError> {
+        let Wanted {
+            crop,
+            top,
+            rows,
+            step,
+        } = wanted;
+        let header = self.reader.header();
+        let (full, width) = (header.size[0] as usize, crop.width());
+        let mut planes = std::mem::take(&mut self.spare);
+        for plane in &mut planes {
+            plane.resize(width * rows, 0.0);
+        }
+        let cut = width < full;
+        let mut whole = [0, 1, 2].map(|_| vec![0.0; if cut { full } else { 0 }]);
+        for row in 0..rows {
+            let range = row * width..(row + 1) * width;
+            let mut out = planes.each_mut().map(|plane| &mut plane[range.clone()]);
+            if cut {
+                self.reader.read(whole.each_mut().map(Vec::as_mut_slice))?;
+                for (out, whole) in out.iter_mut().zip(&whole) {
+                    out.copy_from_slice(&whole[crop.left as usize..][..width]);
+                }
+            } else {
+                self.reader.read(out.each_mut().map(|plane| &mut **plane))?;
             }
-        });
+            let y = top + row * step;
+            // None are left beyond the lower edge of the crop.
+            self.reader.skip((step - 1).min(crop.height() - 1 - y))?;
+            if let Some(grey) = &mut self.grey {
+                grey.add(out.each_ref().map(|plane| &**plane));
+            }
+            if let Some(tally) = &mut self.tally {
+                tally.add(out.each_ref().map(|plane| &**plane), header.float);
+            }
+            if let Some(ambient) = ambient {
+                for (plane, dark) in out.iter_mut().zip(ambient) {
+                    for (value, dark) in plane.iter_mut().zip(&dark[range.clone()]) {
+                        *value -= dark;
+                    }
+                }
+            }
+            if let Some(field) = &self.field {
+                field.divide(y, out);
+            }
+        }
+        Ok(planes)
     }
 }
 
@@ -103,54 +185,38 @@ impl Stack {
         crop: Crop,
         scratch: &Path,
     ) -> Result<Self, StackError> {
-        let open = |path: &Path| -> Result<ColourRows, StackError> {
-            let rows = ColourRows::open(path, encoding, scratch)?;
-            let [width, height] = rows.header().size;
-            if width < crop.right || height < crop.bottom {
-                return Err(StackError::Changed {
-                    path: path.to_owned(),
-                    found: format!("{width} × {height}"),
-                });
-            }
-            Ok(rows)
-        };
-        let mut readers = Vec::with_capacity(paths.len());
+        let open = |path: &Path| Photograph::open(path, encoding, crop, scratch);
+        let mut photographs = Vec::with_capacity(paths.len());
         for path in paths {
-            readers.push(open(path)?);
+            photographs.push(open(path)?);
         }
-        let ambient = ambient.map(open).transpose()?;
-        let full = readers.first().map_or(1, |rows| rows.header().size[0]) as usize;
+        let mut ambient = ambient.map(open).transpose()?;
+        let full = photographs
+            .first()
+            .map_or(1, |first| first.reader.header().size[0]) as usize;
         let count = paths.len() + usize::from(ambient.is_some());
         let bytes = full * PIXEL_BYTES * count.max(1);
         let band_rows = match count {
             0 | 1 => SINGLE_BYTES / bytes,
             _ => (BAND_BYTES / bytes).max(BAND_ROWS).min(MOST_BYTES / bytes),
         };
-        let mut stack = Self {
-            readers,
+        for photograph in photographs.iter_mut().chain(&mut ambient) {
+            photograph.reader.skip(crop.top as usize)?;
+        }
+        Ok(Self {
+            photographs,
             ambient,
             crop,
             done: 0,
-            spare: Vec::new(),
-            greys: Vec::new(),
-            tallies: Vec::new(),
             band_rows: band_rows.clamp(1, 512),
             step: 1,
-        };
-        stack.skip(crop.top as usize)?;
-        Ok(stack)
+        })
     }
 
     /// Whether any photograph holds floats, which have no level of clipping.
     pub fn is_float(&self) -> bool {
-        self.readers.iter().any(|rows| rows.header().float)
-    }
-
-    fn skip(&mut self, rows: usize) -> Result<(), StackError> {
-        for reader in self.readers.iter_mut().chain(&mut self.ambient) {
-            reader.skip(rows)?;
-        }
-        Ok(())
+        let mut headers = self.photographs.iter().map(|of| of.reader.header());
+        headers.any(|header| header.float)
     }
 
     /// Of so many rows (1 or more) one is read from now on, from the first one that is left. Not
@@ -162,29 +228,43 @@ impl Stack {
     /// From now on, makes smaller what each photograph shows, its room's light included, as
     /// [`Self::greys`] gives it.
     pub fn reduce(&mut self, step: usize) {
-        let crop = self.crop;
-        self.greys = self.readers.iter().map(|_| Grey::new(crop, step)).collect();
+        for photograph in &mut self.photographs {
+            photograph.grey = Some(Grey::new(self.crop, step));
+        }
     }
 
     /// The photographs made smaller, once all bands have been read; none without [`Self::reduce`].
     pub fn greys(&mut self) -> Vec<Grey> {
-        std::mem::take(&mut self.greys)
+        let each = self.photographs.iter_mut();
+        each.filter_map(|of| of.grey.take()).collect()
     }
 
     /// From now on, counts how much light each photograph holds.
     pub fn tally(&mut self) {
-        self.tallies = vec![Tally::default(); self.readers.len()];
+        for photograph in &mut self.photographs {
+            photograph.tally = Some(Tally::default());
+        }
     }
 
     /// How much light the photographs hold, as far as they have been read since [`Self::tally`], their room's
     /// included.
-    pub fn tallies(&self) -> &[Tally] {
-        &self.tallies
+    pub fn tallies(&self) -> Vec<Tally> {
+        self.photographs.iter().filter_map(|of| of.tally).collect()
+    }
+
+    /// From now on, divides each photograph by its lamp's light; leaves them as they are without
+    /// `fields`.
+    pub fn divide(&mut self, fields: &[FlatField]) {
+        for (photograph, field) in self.photographs.iter_mut().zip(fields) {
+            photograph.field = Some(field.clone());
+        }
     }
 
     /// Takes back a band that is done with, for its memory.
     pub fn recycle(&mut self, band: Band) {
-        self.spare = band.planes;
+        for (photograph, planes) in self.photographs.iter_mut().zip(band.planes) {
+            photograph.spare = planes;
+        }
     }
 
     /// The next band; `None` at the lower edge.
@@ -202,81 +282,29 @@ impl Stack {
         if rows == 0 {
             return Ok(None);
         }
-        let crop = self.crop;
-        let read = |reader: &mut ColourRows,
-                    spare: Option<[Vec<f32>; 3]>,
-                    grey: Option<&mut Grey>|
-         -> Result<[Vec<f32>; 3], MapError> {
-            let full = reader.header().size[0] as usize;
-            let mut planes = spare.unwrap_or_default();
-            for plane in &mut planes {
-                plane.resize(full * rows, 0.0);
-            }
-            if step == 1 {
-                reader.read(planes.each_mut().map(Vec::as_mut_slice))?;
-            } else {
-                for row in 0..rows {
-                    let range = row * full..(row + 1) * full;
-                    reader.read(planes.each_mut().map(|plane| &mut plane[range.clone()]))?;
-                    reader.skip((step - 1).min(left - 1 - row * step))?;
-                }
-            }
-            if crop.width() < full {
-                for plane in &mut planes {
-                    for y in 0..rows {
-                        let from = y * full + crop.left as usize;
-                        plane.copy_within(from..from + crop.width(), y * crop.width());
-                    }
-                    plane.truncate(rows * crop.width());
-                }
-            }
-            if let Some(grey) = grey {
-                for y in 0..rows {
-                    let range = y * crop.width()..(y + 1) * crop.width();
-                    grey.add(planes.each_ref().map(|plane| &plane[range.clone()]));
-                }
-            }
-            Ok(planes)
+        let wanted = Wanted {
+            crop: self.crop,
+            top: self.done,
+            rows,
+            step,
         };
-        let mut spare: Vec<_> = self.spare.drain(..).map(Some).collect();
-        spare.resize_with(self.readers.len(), || None);
-        let mut greys: Vec<_> = self.greys.iter_mut().map(Some).collect();
-        greys.resize_with(self.readers.len(), || None);
-        let mut tallies: Vec<_> = self.tallies.iter_mut().map(Some).collect();
-        tallies.resize_with(self.readers.len(), || None);
+        let ambient = self.ambient.as_mut().map(|of| of.read(wanted, None));
+        let ambient = ambient.transpose()?;
         let planes: Result<Vec<_>, MapError> = self
-            .readers
+            .photographs
             .par_iter_mut()
-            .zip(spare)
-            .zip(greys)
-            .zip(tallies)
-            .map(|(((reader, spare), grey), tally)| {
-                let planes = read(reader, spare, grey)?;
-                if let Some(tally) = tally {
-                    let [r, g, b] = planes.each_ref().map(Vec::as_slice);
-                    tally.add([r, g, b], reader.header().float);
-                }
-                Ok(planes)
-            })
+            .map(|of| of.read(wanted, ambient.as_ref()))
             .collect();
-        let mut planes = planes?;
-        let ambient = self.ambient.as_mut().map(|reader| read(reader, None, None));
-        if let Some(ambient) = ambient.transpose()? {
-            for photograph in &mut planes {
-                for (plane, dark) in photograph.iter_mut().zip(&ambient) {
-                    for (value, dark) in plane.iter_mut().zip(dark) {
-                        *value -= dark;
-                    }
-                }
-            }
-        }
         let band = Band {
             top: self.done,
             step,
             rows,
-            width: crop.width(),
-            planes,
+            width: self.crop.width(),
+            planes: planes?,
         };
+        if let (Some(of), Some(planes)) = (&mut self.ambient, ambient) {
+            of.spare = planes;
+        }
         self.done += (rows * step).min(left);
         Ok(Some(band))
     }

@@ -5,10 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use rayon::prelude::*;
-
 use super::{
-    capture::{Capture, Circle, Integration, Shots},
+    capture::{Capture, Circle, Shots},
     colour::{
         chart::ChartError,
         correct::{Correction, Fitted},
@@ -20,14 +18,10 @@ use super::{
     matter::{Bench, MatterReport},
     moved::{self, Moved, Stillness},
     photographs::StackError,
-    relief::{
-        compare::{Comparison, range, remove_plane},
-        filter::{Coarse, Split, split},
-        integrate::{Perimeter, Slopes, integrate, integrate_level, integrate_robust},
-        surface,
-    },
+    relief::compare::Comparison,
     report,
     residuals::Residuals,
+    shape::{Shaped, grain, shape},
     solve::{Side, Solved, solve_side},
     stage,
     stereo::{
@@ -338,53 +332,31 @@ fn prepare_side(
         .gathering
         .finish(&bench, &mut encoded, &mut normals, &maps, scratch)?;
     tell("relief", 0.65);
-    let sigma_px = (capture.relief.split_mm / capture.mm_per_px).max(0.5);
     // A file is written by one processor: the others go on.
-    let (written, Split { large, small }) = rayon::join(
+    let (written, shaped) = rayon::join(
         || maps.albedo(&encoded),
-        || split(normals, size[0], sigma_px, capture.relief.filter),
+        || shape(capture, side, &maps, normals, size[0]),
     );
     written?;
     drop(encoded);
-    let um_per_px = capture.mm_per_px * 1000.0;
-    let extent = |heights: &[f64]| range(heights, [0.0, 1.0]).unwrap_or_default();
-    let Coarse {
-        vectors,
-        width,
-        step,
-    } = large;
-    let slopes = Slopes::of_normals(&vectors, width);
-    drop(vectors);
-    let mut shape = heights(slopes, um_per_px * step as f64, capture.relief.integrate);
-    if let Some(known) = capture.relief.known_range_um {
-        let [low, high] = extent(&shape);
-        if high > low {
-            shape.iter_mut().for_each(|h| *h *= known / (high - low));
-        }
-    }
-    let shape_um = extent(&shape);
-    let compared = match (&capture.compare, side) {
-        (Some(other), SideName::Recto) => {
-            let mm = capture.mm_per_px * step as f64;
-            surface::compared(&shape, width, mm, other)?
-        }
-        _ => None,
-    };
-    let surface = maps.shape(&shape, width, shape_um)?;
-    drop(shape);
+    let Shaped {
+        small,
+        slopes,
+        um: shape_um,
+        compared,
+        text: surface,
+    } = shaped?;
     tell("relief", 0.8);
-    let slopes = Slopes::of_normals(&small, size[0]);
     let encoded = write::normal_codes(&small);
     // Before heights take their memory.
     drop(small);
-    let (written, grain) = rayon::join(
+    let (written, (heights, grain_um)) = rayon::join(
         || maps.normal(&encoded),
-        || heights(slopes, um_per_px, Integration::Free),
+        || grain(slopes, capture.mm_per_px * 1000.0),
     );
     written?;
-    let grain_um = extent(&grain);
     tell("writing maps", 0.9);
-    let text = maps.grain(&grain, grain_um, surface)?;
+    let text = maps.grain(&heights, grain_um, surface)?;
     let report = SideReport {
         side,
         size,
@@ -401,27 +373,4 @@ fn prepare_side(
         compared,
     };
     Ok((text, report))
-}
-
-/// Heights in µm of slopes. Their mean plane is taken out, unless the perimeter lies at 0.
-fn heights(slopes: Slopes, um_per_px: f64, how: Integration) -> Vec<f64> {
-    /// The error of a slope that is still usual, half a degree: what stereo is off by where its
-    /// photographs agree.
-    const USUAL: f64 = 0.01;
-    let width = slopes.width;
-    let mut heights = match how {
-        Integration::Free => {
-            // Its plane would be taken out again.
-            let mut heights = integrate_level(slopes, um_per_px);
-            remove_plane(&mut heights, width);
-            return heights;
-        }
-        Integration::Anchored => integrate(&slopes, Perimeter::Anchored),
-        Integration::Robust => integrate_robust(&slopes, USUAL),
-    };
-    if how != Integration::Anchored {
-        remove_plane(&mut heights, width);
-    }
-    heights.par_iter_mut().for_each(|h| *h *= um_per_px);
-    heights
 }

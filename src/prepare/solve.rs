@@ -17,7 +17,7 @@ use super::{
     photographs::Stack,
     residuals::Residuals,
     stereo::{
-        Rig, Rows, Solver,
+        self, Rig, Rows, Solver,
         left_out::{LeftOut, Relit, RelitOne},
     },
 };
@@ -94,30 +94,31 @@ pub(super) fn solve_side(
         scratch,
     )?;
     stack.tally();
+    stack.divide(&fields);
     if let (None, Some(step)) = (&still, moved::step(shots)) {
         stack.reduce(step);
     }
+    let mut solved = stereo::Solved::default();
     let mut next = stack.next()?;
-    while let Some(mut band) = next {
+    while let Some(band) = next {
         let done = (band.top + band.rows) as f64 / size[1] as f64;
         // What of one band has to wait for something, the next one's reading does not wait for.
         let (ahead, ()) = rayon::join(
             || stack.next(),
             || {
-                band.divide(&fields);
                 let rows = Rows {
                     planes: &band.planes,
                     width: band.width,
                     top: band.top,
                 };
                 left_out.add(rows);
-                let mut solved = solver.solve(rows);
+                solver.solve_to(rows, &mut solved);
                 gathering.add(&band, &solved, rig);
                 if let Some(correction) = correction {
                     let [r, g, b] = &mut solved.albedo;
                     correction.apply_planes([r, g, b]);
                 }
-                normals.par_extend(solved.normal);
+                normals.par_extend(&solved.normal);
                 albedo.add(&solved.albedo);
                 solved.residual.iter().for_each(|r| residuals.add(*r));
                 doubted += solved.doubted;
@@ -128,8 +129,9 @@ pub(super) fn solve_side(
         stack.recycle(band);
     }
     let greys = stack.greys();
-    exposed::check(&shots.photographs, stack.tallies()).map_err(PrepareError::Unusable)?;
-    let doubts = exposed::doubts(&shots.photographs, stack.tallies());
+    let tallies = stack.tallies();
+    exposed::check(&shots.photographs, &tallies).map_err(PrepareError::Unusable)?;
+    let doubts = exposed::doubts(&shots.photographs, &tallies);
     // Its buffers are as large as a map of its own.
     drop(stack);
     let stillness = match still {

@@ -16,7 +16,7 @@ use super::{
     lights,
     materials::legend::{self, MediaFile},
     matter,
-    relief::surface,
+    relief::{surface, transform::Real},
     report,
     run::{LampFound, Report, SideReport},
     verso::Place,
@@ -183,7 +183,7 @@ impl<'s> SideFiles<'s> {
     /// and gives the lines of a manifest about the side.
     pub fn grain(
         self,
-        um: &[f64],
+        um: &[f32],
         range: [f64; 2],
         surface: String,
     ) -> Result<SideText, PrepareError> {
@@ -219,9 +219,20 @@ impl SideText {
 
 /// Unit normals → codes of 16 bits.
 pub(super) fn normal_codes(normals: &[[f32; 3]]) -> Vec<[u16; 3]> {
-    // Casts cut, which half a step makes the nearest.
-    let code = |v: f32| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16;
-    normals.par_iter().map(|n| n.map(code)).collect()
+    const TOGETHER: usize = 1 << 12;
+    // Casts cut, which half a step makes the nearest. Compilers vectorise those to 32 bits.
+    let code = |v: f32| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 65535.0 + 0.5) as i32 as u16;
+    let mut codes = vec![[0; 3]; normals.len()];
+    let chunks = codes.par_chunks_mut(TOGETHER);
+    chunks
+        .zip(normals.par_chunks(TOGETHER))
+        .for_each(|(codes, normals)| {
+            let codes = codes.as_flattened_mut().iter_mut();
+            for (out, v) in codes.zip(normals.as_flattened()) {
+                *out = code(*v);
+            }
+        });
+    codes
 }
 
 /// Linear light → codes of 16 bits, sRGB-encoded: straight lines between values of
@@ -279,13 +290,13 @@ struct Levels {
 
 impl Levels {
     /// Of heights within a range.
-    fn new(um: &[f64], [low, high]: [f64; 2]) -> Self {
+    fn new<T: Real>(um: &[T], [low, high]: [f64; 2]) -> Self {
         // To a hundredth, as it is written, and never without extent.
         let low = (low.min(0.0) * 100.0).floor() / 100.0;
         let high = ((high.max(0.0) * 100.0).ceil() / 100.0).max(low + 0.01);
         let scale = 65535.0 / (high - low);
         // Casts cut, which half a step makes the nearest.
-        let value = |h: &f64| ((h - low) * scale + 0.5) as u16;
+        let value = |h: &T| ((h.wide() - low) * scale + 0.5) as u16;
         Self {
             values: um.par_iter().map(value).collect(),
             range: [low, high],

@@ -184,9 +184,9 @@ fn bands_of_a_thin_stack_follow_each_other() {
     let field = FlatField::read(&grey, None, encoding, crop, 1.0, folder.path()).expect("a card");
     let mut stack = Stack::open(&paths, None, encoding, crop, folder.path()).expect("a stack");
     stack.thin(2);
+    stack.divide(&[field.clone(), field]);
     let (mut rows, mut bands) = (0, 0);
-    while let Some(mut band) = stack.next().expect("a band") {
-        band.divide(&[field.clone(), field.clone()]);
+    while let Some(band) = stack.next().expect("a band") {
         for row in 0..band.rows {
             assert_eq!(band.y(row), 2 * rows);
             for (x, found) in band.row(1, row)[2].iter().enumerate() {
@@ -293,6 +293,33 @@ fn photographs_are_made_smaller_on_the_way_as_by_themselves() {
 
 /// How even a grey card is once divided by itself, a lamp falling off by half over it.
 const EVEN: f32 = 2e-3;
+
+#[test]
+fn of_a_large_grey_card_some_rows_are_enough() {
+    let folder = folder();
+    let path = folder.path().join("grey.png");
+    let (width, height) = (5200u32, 330u32);
+    let light = |x: u32, y: u32| {
+        0.6 / (1.0 + 0.7 * (f64::from(x) / 5200.0).powi(2) + 0.1 * f64::from(y) / 330.0)
+    };
+    let noise = |x: u32, y: u32| f64::from((x * 7919 + y * 104_729) % 101) / 101.0 - 0.5;
+    let value = |x: u32, y: u32| 65535.0 * light(x, y) * (1.0 + 0.06 * noise(x, y));
+    let pixels: Vec<u16> = (0..width * height)
+        .map(|i| value(i % width, i / width) as u16)
+        .collect();
+    encode::save_png_grey16(&path, width, height, &pixels, None).expect("written");
+    let (encoding, crop) = (ColourEncoding::Linear, whole(&path));
+    let field = FlatField::read(&path, None, encoding, crop, 0.18, folder.path()).expect("a field");
+    for y in [0, 1, 160, 329] {
+        let row: Vec<f32> = (0..width).map(|x| light(x, y) as f32).collect();
+        let mut planes = [row.clone(), row.clone(), row];
+        let [r, g, b] = &mut planes;
+        field.divide(y as usize, [r, g, b]);
+        for value in planes.as_flattened_planes() {
+            assert!((value / 0.18 - 1.0).abs() < EVEN, "{y}: {value}");
+        }
+    }
+}
 
 #[test]
 fn a_grey_card_takes_the_fall_off_away_and_not_its_own_noise() {

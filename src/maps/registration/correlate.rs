@@ -80,8 +80,8 @@ impl Correlator {
         [left, top]: [usize; 2],
         sign: Sign,
     ) -> Option<Peak> {
-        let inside = |i: usize| (top + i / self.side) * first.width + left + i % self.side;
-        let indices = || (0..self.side * self.side).map(inside);
+        let rows = || (0..self.side).map(|y| (top + y) * first.width + left);
+        let indices = || rows().flat_map(|start| start..start + self.side);
         let count: f32 = indices().map(|i| first.trust[i]).sum();
         if count < TRUSTED * (self.side * self.side) as f32 {
             return None;
@@ -97,14 +97,13 @@ impl Correlator {
         }
 
         // Two real fields to a transform: the patch and its mask, the window and its square.
-        let mut patch = self.spectrum(|x, y| {
-            if x < self.side && y < self.side {
-                let i = inside(y * self.side + x);
-                Complex32::new(deviation(i), first.trust[i])
-            } else {
-                Complex32::ZERO
+        let mut patch = vec![Complex32::ZERO; self.length * self.length];
+        for (out, start) in patch.chunks_exact_mut(self.length).zip(rows()) {
+            for (out, i) in out.iter_mut().zip(start..start + self.side) {
+                *out = Complex32::new(deviation(i), first.trust[i]);
             }
-        });
+        }
+        self.transform(&*self.forward, &mut patch);
         let beside = |x: usize, y: usize| {
             let x = (left + x).checked_sub(self.reach);
             let y = (top + y).checked_sub(self.reach);
@@ -116,10 +115,14 @@ impl Correlator {
                 _ => 0.0,
             }
         };
-        let mut window = self.spectrum(|x, y| {
-            let value = beside(x, y);
-            Complex32::new(value, value * value)
-        });
+        let mut window = vec![Complex32::ZERO; self.length * self.length];
+        for (y, out) in window.chunks_exact_mut(self.length).enumerate() {
+            for (x, out) in out.iter_mut().enumerate() {
+                let value = beside(x, y);
+                *out = Complex32::new(value, value * value);
+            }
+        }
+        self.transform(&*self.forward, &mut window);
         self.products(&mut patch, &mut window);
         self.transform(&*self.backward, &mut patch);
         self.transform(&*self.backward, &mut window);
@@ -137,14 +140,15 @@ impl Correlator {
             .collect();
         let ([dx, dy], peak) = self.peak(&surface, shifts, sign)?;
         let (mut weight, mut moment) = (0.0, [0.0; 2]);
-        for i in 0..self.side * self.side {
-            let [x, y] = [i % self.side, i / self.side];
-            let product = deviation(inside(i)) * beside(x + dx, y + dy);
-            let share = f64::from(product) * peak.z.signum();
-            if share > 0.0 {
-                weight += share;
-                moment[0] += share * (x as f64 + 0.5);
-                moment[1] += share * (y as f64 + 0.5);
+        for (y, start) in rows().enumerate() {
+            for x in 0..self.side {
+                let product = deviation(start + x) * beside(x + dx, y + dy);
+                let share = f64::from(product) * peak.z.signum();
+                if share > 0.0 {
+                    weight += share;
+                    moment[0] += share * (x as f64 + 0.5);
+                    moment[1] += share * (y as f64 + 0.5);
+                }
             }
         }
         let [x, y] = moment.map(|v| v / weight);
@@ -168,10 +172,11 @@ impl Correlator {
                 mask.conj() * square,
             )
         };
+        let mirror = |i: usize| if i == 0 { 0 } else { n - i };
         for y in 0..n {
             for x in 0..n {
                 let at = y * n + x;
-                let opposite = (n - y) % n * n + (n - x) % n;
+                let opposite = mirror(y) * n + mirror(x);
                 if at > opposite {
                     continue;
                 }
@@ -183,23 +188,12 @@ impl Correlator {
         }
     }
 
-    fn spectrum(&self, value: impl Fn(usize, usize) -> Complex32) -> Vec<Complex32> {
-        let n = self.length;
-        let mut field: Vec<Complex32> = (0..n * n).map(|i| value(i % n, i / n)).collect();
-        self.transform(&*self.forward, &mut field);
-        field
-    }
-
     /// In two dimensions; rows come out as rows.
     fn transform(&self, fft: &dyn Fft<f32>, field: &mut [Complex32]) {
         let mut scratch = vec![Complex32::ZERO; fft.get_inplace_scratch_len()];
         for _ in 0..2 {
             fft.process_with_scratch(field, &mut scratch);
-            for y in 0..self.length {
-                for x in 0..y {
-                    field.swap(y * self.length + x, x * self.length + y);
-                }
-            }
+            transpose(field, self.length);
         }
     }
 
@@ -247,6 +241,20 @@ impl Correlator {
             z,
         };
         z.is_finite().then_some(([x, y], peak))
+    }
+}
+
+/// Exchanges rows and columns, in squares of which a cache holds both.
+fn transpose(field: &mut [Complex32], length: usize) {
+    const SQUARE: usize = 16;
+    for top in (0..length).step_by(SQUARE) {
+        for left in (0..=top).step_by(SQUARE) {
+            for y in top..(top + SQUARE).min(length) {
+                for x in left..(left + SQUARE).min(y) {
+                    field.swap(y * length + x, x * length + y);
+                }
+            }
+        }
     }
 }
 

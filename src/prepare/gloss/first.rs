@@ -122,9 +122,11 @@ impl Surfaces {
             };
         }
         let dark = some(&dark, rig);
-        let body = fit(&model, None, None, &dark, rig).0;
         let film = films.then(|| film(&model)).flatten();
-        let film = film.map(|film| fit(&model, None, Some(&film), &dark, rig).0);
+        let (body, film) = rayon::join(
+            || fit(&model, None, None, &dark, rig).0,
+            || film.map(|film| fit(&model, None, Some(&film), &dark, rig).0),
+        );
         let film = film.filter(|film| film.residual <= body.residual);
         let roughness = film.unwrap_or(body);
         let of_dark = match film {

@@ -49,7 +49,8 @@ pub fn solve(
     let ambient = shots.ambient.as_deref();
     let encoding = bench.capture.encoding;
     let mut stack = Stack::open(&shots.photographs, ambient, encoding, shots.crop, scratch)?;
-    while let Some(mut band) = stack.next()? {
+    stack.divide(bench.fields);
+    while let Some(band) = stack.next()? {
         let start = band.top * band.width;
         let range = start..start + band.rows * band.width;
         let of_band = &classes[range.clone()];
@@ -61,7 +62,6 @@ pub fn solve(
         if !of_band.iter().any(here) {
             continue;
         }
-        band.divide(bench.fields);
         let (band, settlers) = (&band, &settlers);
         let places = maps.albedo[range.clone()].par_iter_mut();
         let places = places

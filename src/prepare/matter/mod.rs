@@ -177,11 +177,12 @@ impl Gathering {
             told: materials.is_some(),
             size,
         };
-        let (model, media) = side.measure(&mut report, &names, false);
-        if let Some(model) = model {
-            side.solve_again(&model, &media, surfaces.paper.alpha, scratch)?;
+        let (mut model, mut media) = side.measure(&mut report, &names, false);
+        // Without media nothing would be found anew.
+        if let (Some(first), Some(_)) = (&model, &materials) {
+            side.solve_again(first, &media, surfaces.paper.alpha, scratch)?;
+            (model, media) = side.measure(&mut report, &names, true);
         }
-        let (model, media) = side.measure(&mut report, &names, materials.is_some());
         report.surfaces = Some(surfaces);
         drop(samples);
         let Some(model) = model else {

@@ -47,8 +47,8 @@ pub fn surfaces(
     let ambient = shots.ambient.as_deref();
     let mut stack = Stack::open(&photographs, ambient, capture.encoding, shots.crop, scratch)?;
     stack.thin(samples.step());
-    while let Some(mut band) = stack.next()? {
-        band.divide(&fields);
+    stack.divide(&fields);
+    while let Some(band) = stack.next()? {
         samples.add(&band);
         stack.recycle(band);
     }

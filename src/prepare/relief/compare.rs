@@ -7,6 +7,7 @@
 
 use rayon::prelude::*;
 
+use super::transform::Real;
 use crate::prepare::linear::solve_positive;
 
 /// Mean and standard deviation of a difference.
@@ -115,19 +116,24 @@ fn spread(values: impl Iterator<Item = f64>) -> Option<Spread> {
 /// Takes the plane nearest to the heights out of them, and gives it: its height in the middle of
 /// the picture and its slopes per pixel to the right and down. Holes (NaN) stay. `None` where
 /// fewer than three places, or places on one line, are known.
-pub fn remove_plane(heights: &mut [f64], width: usize) -> Option<[f64; 3]> {
+pub fn remove_plane<T: Real>(heights: &mut [T], width: usize) -> Option<[f64; 3]> {
     let height = heights.len().checked_div(width)?;
     let (middle_x, middle_y) = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
-    // Of each row: how many are known, Σx, Σx², Σh and Σxh.
-    let sums = |row: &[f64]| {
-        let mut sums = [0.0; 5];
-        for (x, h) in row.iter().enumerate().filter(|(_, h)| h.is_finite()) {
-            let x = x as f64 - middle_x;
-            for (sum, value) in sums.iter_mut().zip([1.0, x, x * x, *h, x * h]) {
-                *sum += value;
+    // Of each row: how many are known, Σx, Σx², Σh and Σxh, in lanes.
+    let sums = |row: &[T]| {
+        let mut sums = [[0.0; LANES]; 5];
+        for (i, heights) in row.chunks(LANES).enumerate() {
+            let first = (i * LANES) as f64 - middle_x;
+            for (lane, h) in heights.iter().enumerate() {
+                let (x, h) = (first + lane as f64, h.wide());
+                let (known, h) = if h.is_finite() { (1.0, h) } else { (0.0, 0.0) };
+                let terms = [known, known * x, known * x * x, h, x * h];
+                for (sum, term) in sums.iter_mut().zip(terms) {
+                    sum[lane] += term;
+                }
             }
         }
-        sums
+        sums.map(|lanes| lanes.iter().sum::<f64>())
     };
     let rows: Vec<[f64; 5]> = heights.par_chunks(width).map(sums).collect();
     let mut a = vec![vec![0.0; 3]; 3];
@@ -154,7 +160,7 @@ pub fn remove_plane(heights: &mut [f64], width: usize) -> Option<[f64; 3]> {
     rows.for_each(|(y, row)| {
         let level = middle + down * (y as f64 - middle_y);
         for (x, value) in row.iter_mut().enumerate() {
-            *value -= level + right * (x as f64 - middle_x);
+            *value = T::of(value.wide() - (level + right * (x as f64 - middle_x)));
         }
     });
     Some(plane)
@@ -170,25 +176,25 @@ fn both(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 /// Of the finite heights, in lanes, which do not wait for each other.
-fn least_and_most(heights: &[f64]) -> [f64; 2] {
-    let one = |h: f64| match h.is_finite() {
-        true => [h, h],
-        false => NOTHING,
+fn least_and_most<T: Real>(heights: &[T]) -> [f64; 2] {
+    let one = |h: &T| match h.wide() {
+        h if h.is_finite() => [h, h],
+        _ => NOTHING,
     };
     let (whole, rest) = heights.as_chunks::<LANES>();
     let mut lanes = [NOTHING; LANES];
     for heights in whole {
         for (lane, h) in lanes.iter_mut().zip(heights) {
-            *lane = both(*lane, one(*h));
+            *lane = both(*lane, one(h));
         }
     }
-    let rest = rest.iter().map(|h| one(*h));
+    let rest = rest.iter().map(one);
     lanes.into_iter().chain(rest).fold(NOTHING, both)
 }
 
 /// The range of heights between these shares of all places (such as 0.001 and 0.999, so that
 /// single pixels do not decide). `None` where there is none.
-pub fn range(heights: &[f64], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+pub fn range<T: Real>(heights: &[T], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
     if low <= 0.0 && high >= 1.0 {
         let [least, most] = heights
             .par_chunks(LANES << 10)
@@ -196,7 +202,8 @@ pub fn range(heights: &[f64], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
             .reduce(|| NOTHING, both);
         return (least <= most).then_some([least, most]);
     }
-    let mut sorted: Vec<f64> = heights.iter().copied().filter(|h| h.is_finite()).collect();
+    let known = heights.iter().map(|h| h.wide());
+    let mut sorted: Vec<f64> = known.filter(|h| h.is_finite()).collect();
     let last = sorted.len().checked_sub(1)?;
     let mut at = |share: f64| {
         let i = ((share.clamp(0.0, 1.0) * last as f64).round() as usize).min(last);

@@ -70,33 +70,23 @@ impl Coarse {
         }
     }
 
-    /// Calls `each` with the vectors of a row of `width` pixels, bilinear between the squares'
-    /// middles.
-    fn row(&self, y: usize, width: usize, mut each: impl FnMut(usize, [f32; 3])) {
-        let height = self.vectors.len() / self.width;
-        let between = |at: usize, cells: usize| {
-            let place = (at as f32 + 0.5) / self.step as f32 - 0.5;
-            let place = place.clamp(0.0, (cells - 1) as f32);
-            let first = (place as usize).min(cells.saturating_sub(2));
-            (first, (first + 1).min(cells - 1), place - first as f32)
-        };
-        let (above, below, v) = between(y, height);
-        let at = |row: usize, x: usize| self.vectors[row * self.width + x];
-        for x in 0..width {
-            let (left, right, u) = between(x, self.width);
-            let corners = [
-                at(above, left),
-                at(above, right),
-                at(below, left),
-                at(below, right),
-            ];
+    /// Where each of a row of `width` pixels lies between the squares' middles.
+    fn across(&self, width: usize) -> Vec<Between> {
+        let place = |x| Between::new(x, self.step, self.width);
+        (0..width).map(place).collect()
+    }
+
+    /// Calls `each` with the vectors of a row of pixels, bilinear between the squares' middles.
+    fn row(&self, y: usize, across: &[Between], mut each: impl FnMut(usize, [f32; 3])) {
+        let between = Between::new(y, self.step, self.vectors.len() / self.width);
+        let [above, below] = [between.first, between.second]
+            .map(|row| &self.vectors[row * self.width..(row + 1) * self.width]);
+        let rows = above.iter().zip(below);
+        let line: Vec<[f32; 3]> = rows.map(|(a, b)| mixed(a, b, between.share)).collect();
+        for (x, place) in across.iter().enumerate() {
             each(
                 x,
-                [0, 1, 2].map(|c| {
-                    let top = corners[0][c] * (1.0 - u) + corners[1][c] * u;
-                    let bottom = corners[2][c] * (1.0 - u) + corners[3][c] * u;
-                    top * (1.0 - v) + bottom * v
-                }),
+                mixed(&line[place.first], &line[place.second], place.share),
             );
         }
     }
@@ -105,12 +95,38 @@ impl Coarse {
     pub fn sampled(&self, [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
         let mut all = vec![[0.0; 3]; width * height];
         if width > 0 {
+            let across = self.across(width);
             all.par_chunks_mut(width)
                 .enumerate()
-                .for_each(|(y, row)| self.row(y, width, |x, v| row[x] = v));
+                .for_each(|(y, row)| self.row(y, &across, |x, v| row[x] = v));
         }
         all
     }
+}
+
+/// The squares on both sides of a pixel, and the second one's share.
+struct Between {
+    first: usize,
+    second: usize,
+    share: f32,
+}
+
+impl Between {
+    /// Of the pixel `at` between squares of `step` pixels.
+    fn new(at: usize, step: usize, squares: usize) -> Self {
+        let place = (at as f32 + 0.5) / step as f32 - 0.5;
+        let place = place.clamp(0.0, (squares - 1) as f32);
+        let first = (place as usize).min(squares.saturating_sub(2));
+        Self {
+            first,
+            second: (first + 1).min(squares - 1),
+            share: place - first as f32,
+        }
+    }
+}
+
+fn mixed(a: &[f32; 3], b: &[f32; 3], share: f32) -> [f32; 3] {
+    [0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * share)
 }
 
 /// Splits unit normals at a standard deviation of `sigma_px` pixels (> 0).
@@ -153,11 +169,12 @@ pub fn split(mut normals: Vec<[f32; 3]>, width: usize, sigma_px: f64, filter: Fi
             large
         }
     };
+    let across = large.across(width);
     normals
         .par_chunks_mut(width)
         .enumerate()
         .for_each(|(y, row)| {
-            large.row(y, width, |x, b| {
+            large.row(y, &across, |x, b| {
                 let n = row[x];
                 row[x] = unit([n[0] - b[0], n[1] - b[1], n[2] - (b[2] - 1.0)]);
             });

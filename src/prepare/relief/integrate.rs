@@ -22,7 +22,7 @@
 
 use rayon::prelude::*;
 
-use super::transform::{Kind, Line, transform};
+use super::transform::{Kind, Line, Real, transform};
 
 /// What is asked of the perimeter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,7 +41,7 @@ const STEPS: usize = 30;
 /// The share of the first residual at which a round is done.
 const DONE: f64 = 1e-6;
 /// Slopes beyond this are a normal at the horizon, 86° to the table.
-const STEEPEST: f64 = 15.0;
+const STEEPEST: f32 = 15.0;
 
 /// Slopes of a picture, in heights per pixel: to the right, and down the rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,13 +54,20 @@ pub struct Slopes {
 impl Slopes {
     /// Of unit normals, x right and y up.
     pub fn of_normals(normals: &[[f32; 3]], width: usize) -> Self {
-        let limit = STEEPEST as f32;
-        let slope = |along: f32, z: f32| (along / z.max(1e-6)).clamp(-limit, limit);
-        Self {
-            width,
-            right: normals.par_iter().map(|n| -slope(n[0], n[2])).collect(),
-            down: normals.par_iter().map(|n| slope(n[1], n[2])).collect(),
-        }
+        let slope = |along: f32, over_z: f32| (along * over_z).clamp(-STEEPEST, STEEPEST);
+        let [mut right, mut down] = [0, 1].map(|_| vec![0.0; normals.len()]);
+        normals
+            .par_chunks(width.max(1))
+            .zip(right.par_chunks_mut(width.max(1)))
+            .zip(down.par_chunks_mut(width.max(1)))
+            .for_each(|((normals, right), down)| {
+                for ((n, right), down) in normals.iter().zip(right).zip(down) {
+                    let over_z = n[2].max(1e-6).recip();
+                    *right = -slope(n[0], over_z);
+                    *down = slope(n[1], over_z);
+                }
+            });
+        Self { width, right, down }
     }
 
     fn height(&self) -> usize {
@@ -111,9 +118,10 @@ pub fn integrate(slopes: &Slopes, perimeter: Perimeter) -> Vec<f64> {
 /// As [`integrate`] with a free perimeter, of slopes that are of no use afterwards: of a large sheet
 /// they take as much memory as its heights. They are the least squares, term by term.
 pub fn integrate_free(slopes: Slopes) -> Vec<f64> {
-    let (width, height) = (slopes.width, slopes.height());
-    let [tilt_x, tilt_y] = [mean(&slopes.right), mean(&slopes.down)];
-    let mut h = integrate_level(slopes, 1.0);
+    let width = slopes.width;
+    let [tilt_x, tilt_y] = [&slopes.right, &slopes.down].map(|v| mean(v, width));
+    let mut h: Vec<f64> = integrate_level(slopes, 1.0);
+    let height = h.len().checked_div(width).unwrap_or(0);
     let (middle_x, middle_y) = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
     let rows = h.par_chunks_mut(width.max(1)).enumerate();
     rows.for_each(|(y, row)| {
@@ -124,44 +132,59 @@ pub fn integrate_free(slopes: Slopes) -> Vec<f64> {
     h
 }
 
-fn mean(values: &[f32]) -> f64 {
-    let sum: f64 = values.iter().map(|v| f64::from(*v)).sum();
-    sum / values.len().max(1) as f64
+fn mean(values: &[f32], width: usize) -> f64 {
+    const LANES: usize = 8;
+    // In rows, so that the sum does not depend on how many processors there are, and in lanes, which
+    // do not wait for each other.
+    let sum = |row: &[f32]| -> f64 {
+        let (whole, rest) = row.as_chunks::<LANES>();
+        let mut sums = [0.0; LANES];
+        for values in whole {
+            for (sum, v) in sums.iter_mut().zip(values) {
+                *sum += f64::from(*v);
+            }
+        }
+        let rest = rest.iter().map(|v| f64::from(*v));
+        sums.into_iter().chain(rest).sum()
+    };
+    let rows = values.par_chunks(width.max(1));
+    let sums: Vec<f64> = rows.map(sum).collect();
+    sums.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 /// As [`integrate_free`] without the plane of the mean slopes, times `unit`.
-pub fn integrate_level(slopes: Slopes, unit: f64) -> Vec<f64> {
+pub fn integrate_level<T: Real>(slopes: Slopes, unit: f64) -> Vec<T> {
     let (width, height) = (slopes.width, slopes.height());
     if width == 0 || height == 0 {
         return Vec::new();
     }
     let Slopes { right, down, .. } = slopes;
-    let lines = |kind| [Line::new(kind, width), Line::new(kind, height)];
+    let lines = |kind| [Line::<T>::new(kind, width), Line::new(kind, height)];
     let (cosine, slope) = (lines(Kind::Cosine), lines(Kind::Slope));
-    let without_mean = |v: Vec<f32>| -> Vec<f64> {
-        let mean = mean(&v);
-        v.par_iter()
-            .map(|v| (f64::from(*v) - mean) * unit)
-            .collect()
+    let without_mean = |v: Vec<f32>| -> Vec<T> {
+        let mean = T::of(mean(&v, width));
+        let mut v = T::of_all(v);
+        v.par_chunks_mut(width)
+            .for_each(|row| row.iter_mut().for_each(|v| *v = *v - mean));
+        v
     };
     let mut h = without_mean(right);
     transform(&mut h, width, [&slope[0], &cosine[1]], false);
     let mut down = without_mean(down);
     transform(&mut down, width, [&cosine[0], &slope[1]], false);
-    let (across, along) = (cosine[0].frequencies(), cosine[1].frequencies());
+    let narrow = |v: Vec<f64>| -> Vec<T> { v.into_iter().map(T::of).collect() };
+    let [across, along] = cosine.each_ref().map(|line| narrow(line.frequencies()));
+    let minus = T::of(-unit);
     h.par_chunks_mut(width)
         .zip(down.par_chunks(width))
         .zip(&along)
         .for_each(|((row, down), b)| {
             for ((p, q), a) in row.iter_mut().zip(down).zip(&across) {
-                let square = a * a + b * b;
-                *p = if square > 0.0 {
-                    -(a * *p + b * q) / square
-                } else {
-                    0.0
-                };
+                *p = (*a * *p + *b * *q) * minus / (*a * *a + *b * *b);
             }
         });
+    // What is constant is 0.
+    h[0] = T::default();
     drop(down);
     transform(&mut h, width, cosine.each_ref(), true);
     h
@@ -310,7 +333,7 @@ fn conjugate_gradients(
 /// Solves −∇²h = f.
 struct Poisson {
     width: usize,
-    lines: [Line; 2],
+    lines: [Line<f64>; 2],
     eigenvalues: [Vec<f64>; 2],
 }
 

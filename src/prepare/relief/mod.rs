@@ -12,4 +12,4 @@ pub mod compare;
 pub mod filter;
 pub mod integrate;
 pub mod surface;
-mod transform;
+pub(super) mod transform;

@@ -3,15 +3,48 @@
 //! Two real lines share one complex transform (Makhoul, *IEEE Transactions on Acoustics, Speech and
 //! Signal Processing* 28 (1980) 27, for the cosine transform's order of values).
 
-#![allow(
-    clippy::needless_range_loop,
-    reason = "several arrays run along one index, as their formulas do"
-)]
-
 use std::{f64::consts::PI, sync::Arc};
 
 use rayon::prelude::*;
-use rustfft::{Fft, FftPlanner, num_complex::Complex64};
+use rustfft::{Fft, FftNum, FftPlanner, num_complex::Complex};
+
+/// What heights are computed in: f64, or f32, which takes half the memory and half the time where a
+/// millionth of their range is enough.
+pub trait Real: FftNum + Default + PartialOrd {
+    /// The nearest of its values.
+    fn of(value: f64) -> Self;
+    fn wide(self) -> f64;
+    /// Slopes as they are stored, in the same memory where it can be.
+    fn of_all(values: Vec<f32>) -> Vec<Self>;
+}
+
+impl Real for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    fn wide(self) -> f64 {
+        self
+    }
+
+    fn of_all(values: Vec<f32>) -> Vec<Self> {
+        values.par_iter().map(|value| Self::from(*value)).collect()
+    }
+}
+
+impl Real for f32 {
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    fn wide(self) -> f64 {
+        self.into()
+    }
+
+    fn of_all(values: Vec<f32>) -> Vec<Self> {
+        values
+    }
+}
 
 /// What a line is expanded into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,23 +59,43 @@ pub enum Kind {
 }
 
 /// The transform of lines of one length, and back.
-pub struct Line {
+pub struct Line<T: Real> {
     kind: Kind,
     length: usize,
-    forward: Arc<dyn Fft<f64>>,
-    inverse: Arc<dyn Fft<f64>>,
+    forward: Arc<dyn Fft<T>>,
+    inverse: Arc<dyn Fft<T>>,
     /// e^(−iπk/2N).
-    twiddles: Vec<Complex64>,
+    twiddles: Vec<Complex<T>>,
 }
 
-impl Line {
+/// What a transform works in, kept from one line to the next.
+#[derive(Default)]
+pub(super) struct Room<T> {
+    values: Vec<Complex<T>>,
+    scratch: Vec<Complex<T>>,
+}
+
+impl<T: Real> Room<T> {
+    fn transform(&mut self, fft: &dyn Fft<T>) {
+        let least = fft.get_inplace_scratch_len();
+        if self.scratch.len() < least {
+            self.scratch.resize(least, Complex::default());
+        }
+        fft.process_with_scratch(&mut self.values, &mut self.scratch);
+    }
+}
+
+impl<T: Real> Line<T> {
     pub fn new(kind: Kind, length: usize) -> Self {
         let mut planner = FftPlanner::new();
         let size = match kind {
             Kind::Cosine | Kind::Slope => length.max(1),
             Kind::Sine => 2 * (length + 1),
         };
-        let turn = |k: usize| Complex64::from_polar(1.0, -PI * k as f64 / (2 * size) as f64);
+        let turn = |k: usize| {
+            let turn = Complex::from_polar(1.0, -PI * k as f64 / (2 * size) as f64);
+            Complex::new(T::of(turn.re), T::of(turn.im))
+        };
         Self {
             kind,
             length,
@@ -71,101 +124,140 @@ impl Line {
     }
 
     /// Transforms two lines in place.
-    fn apply(&self, a: &mut [f64], b: &mut [f64], back: bool, buffer: &mut Vec<Complex64>) {
+    fn apply(&self, a: &mut [T], b: &mut [T], back: bool, room: &mut Room<T>) {
         match (self.kind, back) {
-            (Kind::Cosine, false) => self.cosine(a, b, buffer),
-            (Kind::Cosine, true) => self.cosine_back(a, b, buffer),
-            (Kind::Sine, back) => self.sine(a, b, back, buffer),
-            (Kind::Slope, _) => self.slope(a, b, buffer),
+            (Kind::Cosine, false) => self.cosine(a, b, room),
+            (Kind::Cosine, true) => self.cosine_back(a, b, room),
+            (Kind::Sine, back) => self.sine(a, b, back, room),
+            (Kind::Slope, _) => self.slope(a, b, room),
         }
     }
 
-    fn cosine(&self, a: &mut [f64], b: &mut [f64], buffer: &mut Vec<Complex64>) {
-        let n = self.length;
-        buffer.clear();
-        buffer.extend((0..n.div_ceil(2)).map(|i| Complex64::new(a[2 * i], b[2 * i])));
-        buffer.extend(
-            (0..n / 2)
-                .rev()
-                .map(|i| Complex64::new(a[2 * i + 1], b[2 * i + 1])),
-        );
-        self.forward.process(buffer);
-        for k in 0..n {
-            let (z, mirrored) = (buffer[k], buffer[(n - k) % n].conj());
-            let turn = self.twiddles[k];
-            a[k] = ((z + mirrored) * turn).re / 2.0;
-            b[k] = ((z - mirrored) * turn).im / 2.0;
-        }
-    }
-
-    fn cosine_back(&self, a: &mut [f64], b: &mut [f64], buffer: &mut Vec<Complex64>) {
-        let n = self.length;
-        buffer.clear();
-        let term = |line: &[f64], k: usize| {
-            let other = if k == 0 { 0.0 } else { line[n - k] };
-            Complex64::new(line[k], -other) * self.twiddles[k].conj()
+    fn cosine(&self, a: &mut [T], b: &mut [T], room: &mut Room<T>) {
+        let even = a.iter().step_by(2).zip(b.iter().step_by(2));
+        // Backwards, from the last one of an odd place.
+        let odd = a.chunks_exact(2).zip(b.chunks_exact(2)).rev();
+        let values = &mut room.values;
+        values.clear();
+        values.extend(even.map(|(a, b)| Complex::new(*a, *b)));
+        values.extend(odd.map(|(a, b)| Complex::new(a[1], b[1])));
+        room.transform(&*self.forward);
+        let half = T::of(0.5);
+        let of_both = |z: &Complex<T>, mirror: &Complex<T>, turn: &Complex<T>| {
+            (
+                ((z.re + mirror.re) * turn.re - (z.im - mirror.im) * turn.im) * half,
+                ((z.re - mirror.re) * turn.im + (z.im + mirror.im) * turn.re) * half,
+            )
         };
-        buffer.extend((0..n).map(|k| term(a, k) + Complex64::i() * term(b, k)));
-        self.inverse.process(buffer);
-        let scale = 1.0 / n as f64;
-        for i in 0..n {
-            let from = if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 };
-            a[i] = buffer[from].re * scale;
-            b[i] = buffer[from].im * scale;
+        // The first term is its own mirror.
+        let ([first, rest @ ..], [turn, turns @ ..]) = (&*room.values, &*self.twiddles) else {
+            return;
+        };
+        (a[0], b[0]) = of_both(first, first, turn);
+        let terms = rest.iter().zip(rest.iter().rev()).zip(turns);
+        for ((a, b), ((z, mirror), turn)) in a[1..].iter_mut().zip(&mut b[1..]).zip(terms) {
+            (*a, *b) = of_both(z, mirror, turn);
+        }
+    }
+
+    fn cosine_back(&self, a: &mut [T], b: &mut [T], room: &mut Room<T>) {
+        let n = self.length;
+        let scale = T::of(1.0 / n as f64);
+        // (a − ip + i(b − iq)) times the conjugate of the turn.
+        let term = |[a, p]: [&T; 2], [b, q]: [&T; 2], turn: &Complex<T>| {
+            let (re, im) = (*a + *q, *b - *p);
+            Complex::new(
+                (re * turn.re + im * turn.im) * scale,
+                (im * turn.re - re * turn.im) * scale,
+            )
+        };
+        let ([first_a, rest_a @ ..], [first_b, rest_b @ ..], [turn, turns @ ..]) =
+            (&*a, &*b, &*self.twiddles)
+        else {
+            return;
+        };
+        let none = T::default();
+        let terms_a = rest_a.iter().zip(rest_a.iter().rev());
+        let terms_b = rest_b.iter().zip(rest_b.iter().rev());
+        let values = &mut room.values;
+        values.clear();
+        values.push(term([first_a, &none], [first_b, &none], turn));
+        let terms = terms_a.zip(terms_b).zip(turns);
+        values.extend(terms.map(|(((a, p), (b, q)), turn)| term([a, p], [b, q], turn)));
+        room.transform(&*self.inverse);
+        let (even, odd) = room.values.split_at(n.div_ceil(2));
+        for ((a, b), z) in a
+            .iter_mut()
+            .step_by(2)
+            .zip(b.iter_mut().step_by(2))
+            .zip(even)
+        {
+            (*a, *b) = (z.re, z.im);
+        }
+        let (a, b) = (
+            a.iter_mut().skip(1).step_by(2),
+            b.iter_mut().skip(1).step_by(2),
+        );
+        for ((a, b), z) in a.zip(b).zip(odd.iter().rev()) {
+            (*a, *b) = (z.re, z.im);
         }
     }
 
     /// DST-II_m = DCT-II_(N−m) of the line with every other value negated.
-    fn slope(&self, a: &mut [f64], b: &mut [f64], buffer: &mut Vec<Complex64>) {
+    fn slope(&self, a: &mut [T], b: &mut [T], room: &mut Room<T>) {
         for line in [&mut *a, &mut *b] {
             line.iter_mut().skip(1).step_by(2).for_each(|v| *v = -*v);
         }
-        self.cosine(a, b, buffer);
+        self.cosine(a, b, room);
         for line in [a, b] {
             // Terms N−1 … 1 become 1 … N−1; that of the highest frequency has no cosine.
-            line[0] = 0.0;
+            line[0] = T::default();
             line[1..].reverse();
         }
     }
 
-    fn sine(&self, a: &mut [f64], b: &mut [f64], back: bool, buffer: &mut Vec<Complex64>) {
+    fn sine(&self, a: &mut [T], b: &mut [T], back: bool, room: &mut Room<T>) {
         let (n, size) = (self.length, 2 * (self.length + 1));
-        buffer.clear();
-        buffer.resize(size, Complex64::ZERO);
+        room.values.clear();
+        room.values.resize(size, Complex::default());
         for i in 0..n {
-            let value = Complex64::new(a[i], b[i]);
-            buffer[i + 1] = value;
-            buffer[size - 1 - i] = -value;
+            let value = Complex::new(a[i], b[i]);
+            room.values[i + 1] = value;
+            room.values[size - 1 - i] = -value;
         }
-        self.forward.process(buffer);
+        room.transform(&*self.forward);
         // Of an odd line the transform is −2i times its sine transform.
-        let scale = if back { 1.0 / (n + 1) as f64 } else { 1.0 };
-        for k in 0..n {
-            let z = buffer[k + 1];
-            a[k] = -z.im / 2.0 * scale * 2.0_f64.powi(i32::from(back));
-            b[k] = z.re / 2.0 * scale * 2.0_f64.powi(i32::from(back));
+        let scale = T::of(if back { 1.0 / (n + 1) as f64 } else { 0.5 });
+        for ((a, b), z) in a.iter_mut().zip(b).zip(&room.values[1..]) {
+            *a = -z.im * scale;
+            *b = z.re * scale;
         }
     }
 }
 
 /// Transforms a picture of `width` along its rows and its columns, in place.
-pub fn transform(picture: &mut [f64], width: usize, [across, down]: [&Line; 2], back: bool) {
+pub fn transform<T: Real>(
+    picture: &mut [T],
+    width: usize,
+    [across, down]: [&Line<T>; 2],
+    back: bool,
+) {
     picture
         .par_chunks_mut(2 * width)
-        .for_each_init(Vec::new, |buffer, rows| pairs(rows, across, back, buffer));
-    along_columns(picture, width, |columns, buffer| {
-        pairs(columns, down, back, buffer);
+        .for_each_init(Room::default, |room, rows| pairs(rows, across, back, room));
+    along_columns(picture, width, |columns, room| {
+        pairs(columns, down, back, room);
     });
 }
 
 /// Transforms lines one after another, two at a time.
-fn pairs(lines: &mut [f64], line: &Line, back: bool, buffer: &mut Vec<Complex64>) {
+fn pairs<T: Real>(lines: &mut [T], line: &Line<T>, back: bool, room: &mut Room<T>) {
     for pair in lines.chunks_mut(2 * line.length) {
         let (a, b) = pair.split_at_mut(line.length);
         if b.is_empty() {
-            line.apply(a, &mut vec![0.0; line.length], back, buffer);
+            line.apply(a, &mut vec![T::default(); line.length], back, room);
         } else {
-            line.apply(a, b, back, buffer);
+            line.apply(a, b, back, room);
         }
     }
 }
@@ -182,40 +274,56 @@ pub(super) fn along_columns<T, B>(
     T: Copy + Default + Send + Sync,
     B: Default + Send,
 {
-    /// Columns that are taken out at once: a few lines of a cache in each row.
-    const TOGETHER: usize = 32;
-    /// Rows that are exchanged at once, so that both sides stay in a cache.
-    const TILE: usize = 8;
+    /// Bytes of each row that are taken out at once: a few lines of a cache.
+    const BYTES: usize = 256;
+    /// Rows that are exchanged at once: of each a stretch is copied as it lies, so that not every
+    /// value has to be waited for.
+    const TILE: usize = 16;
+    let together = (BYTES / size_of::<T>()).next_multiple_of(2).max(2);
     let height = picture.len() / width;
-    let strips = width.div_ceil(TOGETHER);
+    let strips = width.div_ceil(together);
     let mut strips: Vec<Vec<&mut [T]>> = (0..strips).map(|_| Vec::with_capacity(height)).collect();
     for row in picture.chunks_exact_mut(width) {
-        for (strip, part) in strips.iter_mut().zip(row.chunks_mut(TOGETHER)) {
+        for (strip, part) in strips.iter_mut().zip(row.chunks_mut(together)) {
             strip.push(part);
         }
     }
     strips.par_iter_mut().for_each_init(
-        || (Vec::new(), B::default()),
-        |(columns, buffer), strip| {
+        || {
+            (
+                Vec::new(),
+                vec![T::default(); together * TILE],
+                B::default(),
+            )
+        },
+        |(columns, tile, buffer), strip| {
             let count = strip.first().map_or(0, |part| part.len());
             columns.resize(count * height, T::default());
-            for (tile, rows) in strip.chunks(TILE).enumerate() {
+            for (i, rows) in strip.chunks(TILE).enumerate() {
+                for (out, row) in tile.chunks_exact_mut(count).zip(rows) {
+                    out.copy_from_slice(row);
+                }
                 for x in 0..count {
-                    let start = x * height + tile * TILE;
+                    let start = x * height + i * TILE;
                     let column = &mut columns[start..start + rows.len()];
-                    for (value, row) in column.iter_mut().zip(rows) {
-                        *value = row[x];
+                    let values = tile[x..].iter().step_by(count);
+                    for (out, value) in column.iter_mut().zip(values) {
+                        *out = *value;
                     }
                 }
             }
             work(columns, buffer);
-            for (tile, rows) in strip.chunks_mut(TILE).enumerate() {
+            for (i, rows) in strip.chunks_mut(TILE).enumerate() {
                 for x in 0..count {
-                    let start = x * height + tile * TILE;
+                    let start = x * height + i * TILE;
                     let column = &columns[start..start + rows.len()];
-                    for (value, row) in column.iter().zip(rows.iter_mut()) {
-                        row[x] = *value;
+                    let values = tile[x..].iter_mut().step_by(count);
+                    for (out, value) in values.zip(column) {
+                        *out = *value;
                     }
+                }
+                for (row, values) in rows.iter_mut().zip(tile.chunks_exact(count)) {
+                    row.copy_from_slice(values);
                 }
             }
         },

@@ -29,7 +29,7 @@ const ROUNDS: usize = 6;
 const MOST_GLEAM: f32 = 0.8;
 /// The share of gloss at which a value counts half, where photographs contradict each other.
 const DOUBTED_GLEAM: f32 = 0.15;
-/// What a round may move g by, in shares of it, to be the last: 0.03°.
+/// What g is still off by after the last round, in shares of it: 0.03°.
 const STILL: f32 = 5e-4;
 /// How far paper is from a diffuser, in shares of a value.
 const NOT_LAMBERT: f32 = 0.05;
@@ -87,6 +87,13 @@ impl Block {
         let together = last - first + 1 == lanes;
         for (i, planes) in rows.planes.iter().enumerate() {
             for (lane, plane) in self.colours[i].iter_mut().zip(planes) {
+                let all = plane[start + first..]
+                    .first_chunk()
+                    .filter(|_| together && lanes == LANES);
+                if let Some(all) = all {
+                    *lane = *all;
+                    continue;
+                }
                 if together {
                     lane[..lanes].copy_from_slice(&plane[start + first..start + first + lanes]);
                 } else {
@@ -269,6 +276,8 @@ impl Block {
             self.gleaming.fill([0.0; LANES]);
         }
         let mut g = solve(&self.plain);
+        // What the round before moved g by, which nothing is known of yet.
+        let mut before = [0.0f32; LANES];
         for round in 0..ROUNDS {
             // Half of a step: a narrow gleam turns the normal, which moves the gleam. Of nothing, the
             // first guess is nearer.
@@ -297,9 +306,18 @@ impl Block {
                 }
             }
             g = next;
-            if block::most(&moved) < STILL * block::most(&length) {
+            // Rounds that shrink by one share go on to be moved²/(before − moved) in all.
+            let mut left = moved;
+            for lane in 0..LANES {
+                if moved[lane] < before[lane] {
+                    let ahead = moved[lane] * moved[lane] / (before[lane] - moved[lane]);
+                    left[lane] = ahead.min(moved[lane]);
+                }
+            }
+            if block::most(&left) < STILL * block::most(&length) {
                 break;
             }
+            before = moved;
         }
         g
     }

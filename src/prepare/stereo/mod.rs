@@ -86,19 +86,34 @@ pub struct Solved {
     pub doubted: u64,
 }
 
+impl Solved {
+    /// For so many pixels; what was there is not cleared.
+    fn resize(&mut self, count: usize) {
+        self.normal.resize(count, [0.0; 3]);
+        for plane in &mut self.albedo {
+            plane.resize(count, 0.0);
+        }
+        self.residual.resize(count, 0.0);
+    }
+}
+
 impl Solver {
     /// Solves rows of photographs.
     pub fn solve(&self, rows: Rows<'_>) -> Solved {
+        let mut solved = Solved::default();
+        self.solve_to(rows, &mut solved);
+        solved
+    }
+
+    /// As [`Self::solve`], in the memory of what was solved before.
+    pub fn solve_to(&self, rows: Rows<'_>, solved: &mut Solved) {
         let width = rows.width;
         let count = rows.planes.first().map_or(0, |planes| planes[0].len());
-        let mut solved = Solved {
-            normal: vec![[0.0; 3]; count],
-            albedo: [0, 1, 2].map(|_| vec![0.0; count]),
-            residual: vec![0.0; count],
-            doubted: 0,
-        };
+        solved.resize(count);
         if width == 0 || count == 0 || rows.planes.len() != self.rig.count() {
-            return solved;
+            *solved = Solved::default();
+            solved.resize(count);
+            return;
         }
         let (light, dark) = self.parts();
         let dark = dark.as_ref();
@@ -179,7 +194,6 @@ impl Solver {
                 count as u64
             })
             .sum();
-        solved
     }
 
     /// For what is light, and for what is dark by an albedo below this.
@@ -273,6 +287,14 @@ impl Row<'_> {
         for (plane, lanes) in albedo.zip(&shown.albedo).chain(residual) {
             let lanes = &lanes[..places.len()];
             match places {
+                [first, .., last] if last - first + 1 == LANES => {
+                    if let (Some(out), Some(all)) = (
+                        plane[*first..].first_chunk_mut::<LANES>(),
+                        lanes.first_chunk::<LANES>(),
+                    ) {
+                        *out = *all;
+                    }
+                }
                 [first, .., last] if last - first + 1 == lanes.len() => {
                     plane[*first..=*last].copy_from_slice(lanes);
                 }

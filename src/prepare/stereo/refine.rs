@@ -184,7 +184,18 @@ impl Task<'_> {
         found.cost = self.cost(found, &light);
         let mut damping = [1e-3f32; LANES];
         for _ in 0..rounds {
-            let (next, moved) = self.step(found, &light, &damping);
+            let by_slope = [0, 1].map(|k| {
+                let mut moved = found.clone();
+                moved.slopes[k].iter_mut().for_each(|slope| *slope += STEP);
+                self.light(&moved)
+            });
+            let (next, moved) = Arch::new().dispatch(Step {
+                task: self,
+                found,
+                light: &light,
+                by_slope: &by_slope,
+                damping: &damping,
+            });
             let ahead = self.light(&next);
             let cost = self.cost(&next, &ahead);
             for lane in 0..LANES {
@@ -214,13 +225,16 @@ impl Task<'_> {
         }
     }
 
-    /// The next of each place, and the most that a slope moves by.
-    fn step(&self, found: &Found, light: &Light, damping: &Lane) -> (Found, f32) {
-        let moved = [0, 1].map(|k| {
-            let mut moved = found.clone();
-            moved.slopes[k].iter_mut().for_each(|slope| *slope += STEP);
-            self.light(&moved)
-        });
+    /// The next of each place, and the most that a slope moves by; `moved` is the light of slopes that
+    /// are a [`STEP`] more.
+    #[inline(always)]
+    fn wide_step(
+        &self,
+        found: &Found,
+        light: &Light,
+        moved: &[Light; 2],
+        damping: &Lane,
+    ) -> (Found, f32) {
         // Of the slopes: xx, xy, yy, and the right side; of each channel's albedo what couples it.
         let zero = [0.0f32; LANES];
         let [mut xx, xy, mut yy] = [[KNOWN; LANES], zero, [KNOWN; LANES]];
@@ -340,6 +354,26 @@ impl WithSimd for Lit<'_> {
     }
 }
 
+/// [`Task::wide_step`], likewise.
+struct Step<'s> {
+    task: &'s Task<'s>,
+    found: &'s Found,
+    light: &'s Light,
+    by_slope: &'s [Light; 2],
+    damping: &'s Lane,
+}
+
+impl WithSimd for Step<'_> {
+    type Output = (Found, f32);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> (Found, f32) {
+        self.task
+            .wide_step(self.found, self.light, self.by_slope, self.damping)
+    }
+}
+
+#[inline(always)]
 fn noise(shown: f32) -> f32 {
     NOISE[0] + NOISE[1] * shown.max(0.0)
 }
