@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use recto::{
     manifest::{Exhibit, exhibit::MediaContent},
-    maps::{ColourEncoding, for_each_colour_row},
+    maps::{ColourEncoding, encode::save_exr_rgb, for_each_colour_row},
 };
 
 use super::{code, recto};
@@ -107,9 +107,9 @@ fn swatches(truth: &[usize]) -> String {
     text
 }
 
-#[test]
-fn the_media_of_the_landscape_are_told_from_four_photographs() {
-    let room = tempfile::tempdir().unwrap();
+/// Photographs the part with `fine` × `fine` places in each pixel, their mean being what a camera's pixel shows:
+/// with more than one they also spread over the sample's pixels beside them, between which study interpolates.
+fn photographed(fine: usize, room: &Path) {
     let sample = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/exhibits/landscape"));
     let [left, top, width, height] = PART;
     let mm_per_px = MAPS[1] / MAPS[0];
@@ -125,18 +125,50 @@ fn the_media_of_the_landscape_are_told_from_four_photographs() {
         let lamp = format!(
             "kind=distant,lux_at_sheet=150,kelvin=6504,elevation_deg=45,azimuth_deg={azimuth}"
         );
+        let size = format!("{}x{}", fine * width, fine * height);
+        let picture = room.join("places.exr");
         let output = recto()
             .arg("render")
             .arg(sample)
             .args([
                 "--scene", "whole", "--lamp", &lamp, "--camera", &camera, "--tier", "study",
             ])
-            .args(["--size", &format!("{width}x{height}"), "--out"])
-            .arg(room.path().join(format!("{k}.exr")))
+            .args(["--size", &size, "--out"])
+            .arg(&picture)
             .output()
             .unwrap();
         code(&output, 0);
+        let mut pixels = vec![[0.0f32; 3]; width * height];
+        for_each_colour_row(&picture, ColourEncoding::Linear, |y, row| {
+            for (x, place) in row.iter().enumerate() {
+                let pixel = &mut pixels[y / fine * width + x / fine];
+                for (sum, value) in pixel.iter_mut().zip(place) {
+                    *sum += value / (fine * fine) as f32;
+                }
+            }
+        })
+        .unwrap();
+        let path = room.join(format!("{k}.exr"));
+        save_exr_rgb(&path, width as u32, height as u32, &pixels).unwrap();
     }
+}
+
+#[test]
+fn the_media_of_the_landscape_are_told_from_four_photographs() {
+    told(1);
+}
+
+#[test]
+fn they_are_told_from_photographs_that_spread_edges_too() {
+    told(3);
+}
+
+fn told(fine: usize) {
+    let room = tempfile::tempdir().unwrap();
+    let sample = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/exhibits/landscape"));
+    let [_, _, width, height] = PART;
+    let mm_per_px = MAPS[1] / MAPS[0];
+    photographed(fine, room.path());
     let truth = truth(&sample.join("maps/recto"));
     let capture = format!(
         "id = \"part\"\ntitle = \"A part of the valley\"\nscale.mm_per_px = {mm_per_px}\n[lamps]\nazimuth_deg = {AZIMUTHS:?}\n\

@@ -39,6 +39,7 @@ fn materials() -> Materials {
         chosen: way,
         coverage: vec![0.5, 0.5],
         unlike: 0.01,
+        spread: 0.0,
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! | step | where |
 //! |---|---|
+//! | how far photographs blur, and colours without | [`sharpness`] |
 //! | what is seen of a place | [`features`] |
 //! | swatches → places to learn from, to choose by, to be judged by | [`blocks`] |
 //! | a small network, by Levenberg and Marquardt's method | [`network`] |
@@ -18,6 +19,7 @@ pub mod edges;
 pub mod features;
 pub mod legend;
 pub mod network;
+pub mod sharpness;
 pub mod ways;
 
 use rayon::prelude::*;
@@ -83,6 +85,8 @@ pub struct Materials {
     pub coverage: Vec<f64>,
     /// The share of the side that is like no swatch.
     pub unlike: f64,
+    /// The variance in square pixels by which photographs spread edges, which was taken out before.
+    pub spread: f64,
 }
 
 impl Materials {
@@ -112,6 +116,12 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     if media.len() < 2 {
         return None;
     }
+    let spread = sharpness::spread(seen.albedo, seen.width);
+    let sharp = (spread > 0.0).then(|| sharpness::sharpened(seen.albedo, seen.width, spread));
+    let seen = &Seen {
+        albedo: sharp.as_deref().unwrap_or(seen.albedo),
+        ..*seen
+    };
     let paper_shown = swatches.iter().any(|swatch| swatch.medium.is_none());
     let mut places = Places::new(media.len());
     for swatch in swatches {
@@ -174,6 +184,7 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     let materials = Materials {
         coverage: met.into_iter().map(|count| count as f64 / total).collect(),
         unlike,
+        spread,
         media,
         paper_shown,
         learnt,

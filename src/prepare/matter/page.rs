@@ -170,7 +170,7 @@ fn of_materials(materials: &Materials) -> String {
         "<h3>Materials</h3><p>Told apart by {}, learnt from blocks of the swatches, and small swatches as a \
          whole; others chose between {} ways, of which those that see more of a place's surroundings have to do \
          better by {BETTER} for each step, and others again, of which none knew, judge them. A \
-         network then also weighs how often each is met on the sheet. Bare paper was learnt {}. {:.2} % of the side are like no swatch.</p>\
+         network then also weighs how often each is met on the sheet. Bare paper was learnt {}. {:.2} % of the side are like no swatch.{}</p>\
          <table><tr><th>Way<th>right where it was chosen<th>right on held-out places",
         features::NAMES.join(", "),
         materials.trials.len(),
@@ -179,6 +179,14 @@ fn of_materials(materials: &Materials) -> String {
             false => "where the sheet is light, as no swatch shows it",
         },
         materials.unlike * 100.0,
+        match materials.spread > 0.0 {
+            true => format!(
+                " Edges are spread by {:.2} pixels (one standard deviation) in the photographs, which was taken out of \
+                 the colours that materials were told by.",
+                materials.spread.sqrt()
+            ),
+            false => String::new(),
+        },
     );
     for trial in &materials.trials {
         let how = match trial.way.method {
