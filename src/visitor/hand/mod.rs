@@ -3,8 +3,12 @@
 
 mod carrying;
 pub mod mirrored;
+mod retreat;
+mod serving;
 mod touring;
 
+pub use retreat::Retreat;
+pub use serving::Serving;
 pub use touring::stops;
 
 use std::{collections::BTreeSet, f64::consts::PI, sync::Arc};
@@ -12,6 +16,7 @@ use std::{collections::BTreeSet, f64::consts::PI, sync::Arc};
 use bevy::prelude::Resource;
 use glam::DVec2;
 
+use self::retreat::Good;
 use super::{
     comparing::{self, TURN_S},
     hotspots::Hotspots,
@@ -65,34 +70,6 @@ pub struct Picture {
     pub width_mm: f64,
     /// Whether the display's size is known or guessed.
     pub measured: bool,
-}
-
-/// What could be shown, also of an earlier version of the exhibit.
-#[derive(Clone, Debug)]
-struct Good {
-    exhibit: Arc<Exhibit>,
-    scene: usize,
-    view: View,
-}
-
-/// Tiers for what is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Serving {
-    /// The cheapest that is as exact as the exhibit asks.
-    pub at_rest: Tier,
-    /// The most exact, up to that one, whose frames come fast enough.
-    pub in_motion: Tier,
-}
-
-/// What became of a wish that cannot be shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Retreat {
-    /// Nothing could be shown yet.
-    Nowhere,
-    /// Back to what could be shown.
-    Back,
-    /// It was what could be shown before, and no longer can be.
-    Stuck,
 }
 
 /// What the hand holds.
@@ -521,46 +498,6 @@ impl Hand {
         (self.lit.clone(), scene)
     }
 
-    /// Nobody asked for a tier: what is served decides, and until then the one of
-    /// [`Hand::new`].
-    pub fn leave_tier_free(&mut self) {
-        self.free = true;
-    }
-
-    /// The tier that somebody asked for.
-    pub fn wanted(&self) -> Option<Tier> {
-        (!self.free).then_some(self.tier)
-    }
-
-    /// Tiers for what is shown, as they are predicted; `None` while nothing is known.
-    pub fn serve(&mut self, serving: Option<Serving>) {
-        self.serving = serving;
-    }
-
-    fn tier_at_rest(&self) -> Tier {
-        match self.serving {
-            Some(serving) if self.free => serving.at_rest,
-            _ => self.tier,
-        }
-    }
-
-    /// Something moves and frames come too slowly: the tier that is served in motion, the cheapest
-    /// while nothing is known, or again the one at rest. Tiers from the literature are never
-    /// replaced.
-    pub fn hurry(&mut self, hurried: bool) {
-        self.hurried = hurried;
-    }
-
-    /// Whether a cheaper tier is good enough just now.
-    pub fn is_hurried(&self) -> bool {
-        self.hurried && !self.is_led
-    }
-
-    /// The tier at rest, which a hurried picture may not have.
-    pub fn tier(&self) -> Tier {
-        self.tier_at_rest()
-    }
-
     /// Index of the scene that the view is of.
     pub fn scene(&self) -> usize {
         self.scene
@@ -622,40 +559,6 @@ impl Hand {
         let width = self.camera().width_mm;
         let at_true = (width / self.true_width_mm() - 1.0).abs() < 2.0 * ARRIVED;
         at_true.then_some(self.picture.measured)
-    }
-
-    /// What is shown now could be shown.
-    pub fn keep(&mut self) {
-        if self.flip.is_none() {
-            self.good = Some(Good {
-                exhibit: self.exhibit.clone(),
-                scene: self.scene,
-                view: self.view.clone(),
-            });
-        }
-    }
-
-    /// What was asked for cannot be shown: back to what could, be it of an earlier version.
-    pub fn retreat(&mut self) -> Retreat {
-        let Some(good) = self.good.clone() else {
-            return Retreat::Nowhere;
-        };
-        let same_version = Arc::ptr_eq(&good.exhibit, &self.exhibit);
-        let same_scene = same_version && good.scene == self.scene;
-        if same_scene && good.view.shows_as(&self.view) && self.flip.is_none() {
-            return Retreat::Stuck;
-        }
-        if !same_version {
-            self.refused.clear();
-        } else if good.scene != self.scene {
-            self.refused.insert(self.scene);
-        }
-        self.exhibit = good.exhibit;
-        self.scene = good.scene;
-        self.view = good.view;
-        self.still();
-        self.relight();
-        Retreat::Back
     }
 
     fn written(&self) -> &Scene {
