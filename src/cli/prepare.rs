@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Failure, output, warn};
-use crate::prepare::{self, capture::Capture};
+use crate::prepare::{self, capture::Capture, report::REPORT};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -72,5 +72,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for doubt in report.doubts() {
         output::say(format_args!("warning: {doubt}"));
     }
+    output::say(format_args!(
+        "{} says how well all of it was found",
+        report.manifest.with_file_name(REPORT).display()
+    ));
     output::result(report.manifest.display())
 }

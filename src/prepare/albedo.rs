@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::write::SrgbCodes;
+use super::codes::SrgbCodes;
 
 pub(super) struct Albedo {
     codes: SrgbCodes,

@@ -61,7 +61,7 @@ pub struct FlatField {
 
 impl FlatField {
     /// Reads the photograph of a card that reflects `reflectance` of the light; `crop` is what of
-    /// it is needed. `ambient` shows the card with all lamps off, and is taken from it.
+    /// it is needed; where its cells are large, every row is not read. `ambient` shows the card with all lamps off, and is taken from it.
     ///
     /// # Errors
     /// [`FlatFieldError`].
@@ -83,7 +83,7 @@ impl FlatField {
         let size = [crop.width(), crop.height()];
         let longer = size[0].max(size[1]);
         let side = longer.div_ceil(CELLS).max(LEAST_PX);
-        stack.thin((side / ROWS).max(1));
+        stack.thin((side.min(size[1]) / ROWS).max(1));
         let cells = size.map(|pixels| (pixels / side).max(1));
         let step = [0, 1].map(|i| size[i] as f64 / cells[i] as f64);
         // The first column whose middle lies in each cell, and the end.

@@ -22,6 +22,7 @@
 //! | these four for a side | [`matter`] |
 //! | a verso's place on its recto | [`verso`] |
 //! | the photographs of a side, run through once: normals, albedo, and the rest | `solve`, `albedo` |
+//! | codes of maps and linear light | `codes` |
 //! | its normals → shape at large, grain and strokes | `shape` |
 //! | what the photographs leave over, counted | [`residuals`] |
 //! | all of it, as a command does it | [`run`] |
@@ -32,6 +33,7 @@
 
 mod albedo;
 pub mod capture;
+mod codes;
 pub mod colour;
 pub mod depth;
 pub mod exposed;

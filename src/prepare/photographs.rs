@@ -252,8 +252,7 @@ impl Stack {
         self.photographs.iter().filter_map(|of| of.tally).collect()
     }
 
-    /// From now on, divides each photograph by its lamp's light; leaves them as they are without
-    /// `fields`.
+    /// From now on, divides each photograph that has one of `fields` by its lamp's light.
     pub fn divide(&mut self, fields: &[FlatField]) {
         for (photograph, field) in self.photographs.iter_mut().zip(fields) {
             photograph.field = Some(field.clone());
@@ -270,7 +269,7 @@ impl Stack {
     /// The next band; `None` at the lower edge.
     ///
     /// # Errors
-    /// Of the first photograph that breaks off.
+    /// Of the first photograph that breaks off, the one without lamps before all others.
     #[allow(
         clippy::should_implement_trait,
         reason = "an iterator would hide that reading can fail"

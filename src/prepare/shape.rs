@@ -9,8 +9,8 @@ use super::{
         compare::{Comparison, range, remove_plane},
         filter::{Coarse, Split, split},
         integrate::{Perimeter, Slopes, integrate, integrate_level, integrate_robust},
+        real::Real,
         surface,
-        transform::Real,
     },
     write::SideFiles,
 };
@@ -21,8 +21,9 @@ const WHOLE: [f64; 2] = [0.0, 1.0];
 
 /// What a side's normals are parted into.
 pub(super) struct Shaped {
-    /// Unit normals of grain and strokes, and their slopes.
+    /// Unit normals of grain and strokes.
     pub small: Vec<[f32; 3]>,
+    /// Their slopes.
     pub slopes: Slopes,
     /// Lowest and highest place of the shape at large in µm.
     pub um: [f64; 2],

@@ -16,13 +16,12 @@ use super::{
     lights,
     materials::legend::{self, MediaFile},
     matter,
-    relief::{surface, transform::Real},
+    relief::{real::Real, surface},
     report,
     run::{LampFound, Report, SideReport},
     verso::Place,
 };
 use crate::{
-    colour::srgb_encode,
     manifest::{MANIFEST, MAX_LAMPS, SideName, check_shape},
     maps::encode::{save_png_grey16, save_png_rgb16, write_whole},
 };
@@ -235,52 +234,6 @@ pub(super) fn normal_codes(normals: &[[f32; 3]]) -> Vec<[u16; 3]> {
     codes
 }
 
-/// Linear light → codes of 16 bits, sRGB-encoded: straight lines between values of
-/// [`srgb_encode`], 256 in each octave, which are 0.03 of a code off at most.
-pub(super) struct SrgbCodes {
-    /// From [`Self::FROM`] on, up to 1.
-    table: Vec<f32>,
-}
-
-impl SrgbCodes {
-    /// Below, sRGB is a straight line.
-    const FROM: f32 = 1.0 / 512.0;
-    /// Of a float's mantissa, the bits within a piece.
-    const WITHIN: u32 = 15;
-
-    pub fn new() -> Self {
-        let (first, last) = (Self::piece(Self::FROM), Self::piece(1.0));
-        let code = |piece: u32| {
-            let linear = f32::from_bits(piece << Self::WITHIN);
-            (srgb_encode(f64::from(linear)) * 65535.0) as f32
-        };
-        Self {
-            table: (first..=last + 1).map(code).collect(),
-        }
-    }
-
-    fn piece(linear: f32) -> u32 {
-        linear.to_bits() >> Self::WITHIN
-    }
-
-    /// The nearest code; what is not a number is black.
-    pub fn of(&self, linear: f32) -> u16 {
-        if linear >= 1.0 {
-            u16::MAX
-        } else if linear >= Self::FROM {
-            let piece = (Self::piece(linear) - Self::piece(Self::FROM)) as usize;
-            let within = linear.to_bits() & ((1 << Self::WITHIN) - 1);
-            let share = within as f32 / (1 << Self::WITHIN) as f32;
-            let (a, b) = (self.table[piece], self.table[piece + 1]);
-            (a + (b - a) * share + 0.5) as u16
-        } else if linear > 0.0 {
-            (srgb_encode(f64::from(linear)) * 65535.0 + 0.5) as u16
-        } else {
-            0
-        }
-    }
-}
-
 /// Heights as 16-bit values.
 struct Levels {
     values: Vec<u16>,
@@ -396,30 +349,4 @@ fn lamp_lines(lamps: &[LampFound]) -> String {
         )
     });
     lines.collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn codes_are_the_nearest_to_a_tenth() {
-        let codes = SrgbCodes::new();
-        let mut linear = 1e-6f32;
-        while linear < 1.1 {
-            let exact = srgb_encode(f64::from(linear.min(1.0))) * 65535.0;
-            let off = (f64::from(codes.of(linear)) - exact).abs();
-            assert!(off < 0.6, "{linear}: {off}");
-            linear *= 1.0003;
-        }
-        for (linear, code) in [
-            (0.0, 0),
-            (-1.0, 0),
-            (f32::NAN, 0),
-            (1.0, 65535),
-            (f32::INFINITY, 65535),
-        ] {
-            assert_eq!(codes.of(linear), code, "{linear}");
-        }
-    }
 }

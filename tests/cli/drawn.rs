@@ -108,7 +108,7 @@ fn swatches(truth: &[usize]) -> String {
 }
 
 /// Photographs the part with `fine` × `fine` places in each pixel, their mean being what a camera's pixel shows:
-/// with more than one they also spread over the sample's pixels beside them, between which study interpolates.
+/// with more than one they are also blurred over the sample's pixels beside them, between which study interpolates.
 fn photographed(fine: usize, room: &Path) {
     let sample = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/exhibits/landscape"));
     let [left, top, width, height] = PART;
@@ -159,7 +159,7 @@ fn the_media_of_the_landscape_are_told_from_four_photographs() {
 }
 
 #[test]
-fn they_are_told_from_photographs_that_spread_edges_too() {
+fn they_are_told_from_blurred_photographs_too() {
     told(3);
 }
 

@@ -17,7 +17,7 @@ use recto::{
             compare::{compare, range},
             integrate::{Perimeter, Slopes, integrate},
         },
-        stereo::{Gain, Paper, Response, Rig, Rows, Solved, Solver, Standing, relight},
+        stereo::{Gain, Inked, Paper, Response, Rig, Rows, Solved, Solver, Standing, relight},
     },
 };
 
@@ -481,4 +481,80 @@ fn nothing_is_found_in_the_dark_and_nothing_breaks() {
         top: 0,
     });
     assert_eq!(solved.normal, [[0.0; 3]; 4]);
+}
+
+#[test]
+fn dark_places_are_solved_alike_wherever_they_lie_in_a_row() {
+    const WIDTH: usize = 40;
+    let lamps = ring(4, 45.0);
+    let inked = Response::Inked(Box::new(Inked {
+        paper: Paper::new(0.5, 1.5, 1.0),
+        dark: Paper::new(0.3, 1.5, 1.0),
+        below: 0.2,
+    }));
+    let solver = Solver {
+        rig: Rig::far(lamps.clone()),
+        response: inked,
+        robustness: Robustness::None,
+    };
+    // Facing a little aside, and gleaming under one lamp.
+    let shown = |lamp: usize, is_dark: bool| match is_dark {
+        true => [0.065, 0.05, 0.042, 0.051][lamp],
+        false => [0.62, 0.55, 0.5, 0.56][lamp],
+    };
+    let solved = |dark: &[usize]| {
+        let planes: Vec<[Vec<f32>; 3]> = (0..lamps.len())
+            .map(|lamp| {
+                let row = (0..WIDTH).map(|x| shown(lamp, dark.contains(&x)));
+                let row: Vec<f32> = row.collect();
+                [0, 1, 2].map(|_| row.clone())
+            })
+            .collect();
+        solver.solve(Rows {
+            planes: &planes,
+            width: WIDTH,
+            top: 0,
+        })
+    };
+    // Normal, albedo and residual.
+    let of = |solved: &Solved, x: usize| -> Vec<f32> {
+        let albedo = solved.albedo.each_ref().map(|plane| plane[x]);
+        let normal = solved.normal[x];
+        normal
+            .into_iter()
+            .chain(albedo)
+            .chain([solved.residual[x]])
+            .collect()
+    };
+    let alike = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 2e-3);
+    let all: Vec<usize> = (0..WIDTH).collect();
+    let light = of(&solved(&[]), 5);
+    let expected = of(&solved(&all), 5);
+    // As paper the dark ones would leave more over.
+    let paper = Solver {
+        response: Response::Paper(Paper::new(0.5, 1.5, 1.0)),
+        ..solver.clone()
+    };
+    let planes: Vec<[Vec<f32>; 3]> = (0..lamps.len())
+        .map(|lamp| [0, 1, 2].map(|_| vec![shown(lamp, true)]))
+        .collect();
+    let rows = Rows {
+        planes: &planes,
+        width: 1,
+        top: 0,
+    };
+    let as_paper = of(&paper.solve(rows), 0);
+    assert!(
+        !alike(&expected[6..], &as_paper[6..]),
+        "{expected:?} {as_paper:?}"
+    );
+    // As many as are worked on together lie between the first two.
+    for dark in [vec![0, 31], vec![3, 4, 34], vec![0, 39], vec![7]] {
+        let some = solved(&dark);
+        for x in 0..WIDTH {
+            let known = if dark.contains(&x) { &expected } else { &light };
+            let found = of(&some, x);
+            assert!(alike(&found, known), "{dark:?} {x}: {found:?} {known:?}");
+        }
+    }
 }

@@ -5,8 +5,9 @@ use recto::{
     manifest::SideName,
     prepare::{
         Report, SideReport,
+        capture::Crop,
         materials::{
-            Materials, Trial,
+            Known, Materials, SwatchTold, Trial,
             confusion::Confusion,
             ways::{Method, Surroundings, Way},
         },
@@ -39,7 +40,20 @@ fn materials() -> Materials {
         chosen: way,
         coverage: vec![0.5, 0.5],
         unlike: 0.01,
-        spread: 0.0,
+        swatches: vec![SwatchTold {
+            swatch: Known {
+                medium: "wash".parse().ok(),
+                rect: Crop {
+                    left: 10,
+                    top: 20,
+                    right: 30,
+                    bottom: 40,
+                },
+            },
+            right: 0.9,
+            taken_for: None,
+        }],
+        blur: 0.0,
     }
 }
 
@@ -113,7 +127,7 @@ fn each_limit_parts_good_from_doubtful() {
     };
     type Change<'c> = &'c dyn Fn(&mut Report, f64);
     // What is changed, just within the limit, just beyond it, and what is told of it.
-    let cases: [(Change<'_>, [f64; 2], &str, &str); 10] = [
+    let cases: [(Change<'_>, [f64; 2], &str, &str); 11] = [
         (&|r, v| r.spread = v, [0.201, 0.199], "lamps", "noise"),
         (
             &|r, v| {
@@ -180,6 +194,15 @@ fn each_limit_parts_good_from_doubtful() {
             [0.199, 0.201],
             "materials",
             "like no swatch",
+        ),
+        (
+            &|r, v| {
+                let materials = r.sides[0].matter.materials.as_mut();
+                materials.expect("materials").swatches[0].right = v;
+            },
+            [0.501, 0.499],
+            "materials",
+            "most others as bare-paper; draw it again",
         ),
     ];
     for (change, [within, beyond], matter, words) in cases {

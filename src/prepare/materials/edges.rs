@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::features::Seen;
-use crate::colour::{luminance, srgb_decode};
+use crate::{colour::luminance, prepare::codes::linear};
 
 /// The share of a place that a medium covers from which on it is drawn there. A little less than half: what is
 /// taken for a thin film of ink is shown as it is, what is taken for dark paper is not under other light.
@@ -33,10 +33,7 @@ pub fn settle(seen: &Seen<'_>, classes: &[u8], far: &mut [bool]) -> Vec<u8> {
             let bottom = (chunk * ROWS + out.len() / width + 1).min(height);
             let luminance: Vec<f32> = seen.albedo[top * width..bottom * width]
                 .iter()
-                .map(|rgb| {
-                    let linear = rgb.map(|v| srgb_decode(f64::from(v) / 65535.0));
-                    luminance(linear) as f32
-                })
+                .map(|rgb| luminance(linear(*rgb).to_array()) as f32)
                 .collect();
             let within = Window {
                 width,

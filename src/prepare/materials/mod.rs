@@ -85,8 +85,11 @@ pub struct Materials {
     pub coverage: Vec<f64>,
     /// The share of the side that is like no swatch.
     pub unlike: f64,
-    /// The variance in square pixels by which photographs spread edges, which was taken out before.
-    pub spread: f64,
+    /// How many of each swatch's places are told as it says.
+    pub swatches: Vec<SwatchTold>,
+    /// The variance in square pixels of the blur that was taken out of the colours before, as
+    /// [`sharpness::blur`] found it.
+    pub blur: f64,
 }
 
 impl Materials {
@@ -95,6 +98,16 @@ impl Materials {
         let chosen = self.trials.iter().find(|trial| trial.way == self.chosen);
         chosen.map(|trial| &trial.held_out)
     }
+}
+
+/// How the places of a swatch are told in the end, whose class it says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwatchTold {
+    pub swatch: Known,
+    /// The share that is told as it says.
+    pub right: f64,
+    /// What most of the others are told as.
+    pub taken_for: Option<MediumId>,
 }
 
 /// A swatch, in pixels of what is solved.
@@ -116,8 +129,8 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     if media.len() < 2 {
         return None;
     }
-    let spread = sharpness::spread(seen.albedo, seen.width);
-    let sharp = (spread > 0.0).then(|| sharpness::sharpened(seen.albedo, seen.width, spread));
+    let blur = sharpness::blur(seen.albedo, seen.width);
+    let sharp = (blur > 0.0).then(|| sharpness::sharpened(seen.albedo, seen.width, blur));
     let seen = &Seen {
         albedo: sharp.as_deref().unwrap_or(seen.albedo),
         ..*seen
@@ -175,6 +188,26 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     });
     // What is like no swatch as it is a little of two is known.
     let settled = edges::settle(seen, &classes, &mut far);
+    let told = swatches.iter().map(|swatch| {
+        let rows = swatch.rect.top as usize..swatch.rect.bottom as usize;
+        let columns = swatch.rect.left as usize..swatch.rect.right as usize;
+        let mut met = vec![0usize; media.len()];
+        for row in rows.map(|y| &settled[y * width..(y + 1) * width]) {
+            row[columns.clone()]
+                .iter()
+                .for_each(|class| met[usize::from(*class)] += 1);
+        }
+        let all: usize = met.iter().sum();
+        let own = media.iter().position(|medium| *medium == swatch.medium);
+        let right = own.map_or(0, |own| std::mem::take(&mut met[own]));
+        let most = (0..met.len()).max_by_key(|class| met[*class]);
+        SwatchTold {
+            swatch: *swatch,
+            right: right as f64 / all.max(1) as f64,
+            taken_for: most.and_then(|class| media[class]),
+        }
+    });
+    let told = told.collect();
     let total = classes.len().max(1) as f64;
     let unlike = far.iter().filter(|far| **far).count() as f64 / total;
     let mut met = vec![0u64; media.len()];
@@ -184,7 +217,8 @@ pub fn classify(seen: &Seen<'_>, swatches: &[Known]) -> Option<(Vec<u8>, Materia
     let materials = Materials {
         coverage: met.into_iter().map(|count| count as f64 / total).collect(),
         unlike,
-        spread,
+        swatches: told,
+        blur,
         media,
         paper_shown,
         learnt,

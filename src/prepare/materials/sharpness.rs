@@ -1,27 +1,27 @@
-//! How far photographs blur what is drawn, and colours with that taken out.
+//! How far photographs blur what is drawn, and colours with that taken out for the most part.
 //!
-//! A pixel shows the mean over its area, and lens and sensor spread it over its neighbours: half of
-//! what is told of a place at the edge of a stroke is theirs. How far it is spread is seen at edges
-//! between two even stretches. Along a line across such an edge, in pixels that do not spread, one
-//! value at most lies between both sides, at the share p; the differences from value to value then
-//! have the variance p(1 − p), and what spreads it adds its own. The sharpest tenth of all edges
-//! says how much: the others are soft by themselves, or the line crosses them aslant.
+//! A pixel shows the mean over its area, and lens and sensor blur that over its neighbours: half of
+//! what is told of a place at the edge of a stroke is theirs. By how much is seen at edges between
+//! two even stretches. Along a line across such an edge, where nothing is blurred, one value at most
+//! lies between both sides. The differences from value to value then have the variance p(1 − p), p
+//! being what their mean place has beyond a whole number, and blur adds its own variance, whatever p
+//! is. The least fifth of all edges says how much: the others are soft by themselves, or the line
+//! crosses them aslant. A sheet of nothing but soft strokes looks blurred, and is sharpened by as much.
 
 use rayon::prelude::*;
 
-use crate::{colour::srgb_decode, prepare::write::SrgbCodes};
+use crate::prepare::codes::{LinearCodes, SrgbCodes};
 
-/// Values along a line that an edge is looked for in; the first and last two lie on its sides.
-const LINE: usize = 7;
-/// The share of all edges, from the sharpest, whose variance is taken. With fewer noise would decide.
-const SHARPEST: f64 = 0.1;
-/// What p(1 − p) is below at that share of all p, which are evenly distributed.
-const UNSPREAD: f64 = SHARPEST / 2.0 * (1.0 - SHARPEST / 2.0);
+/// Values along a line that an edge is looked for in: on each side of its middle half of them, the
+/// outermost two of which lie on its sides.
+const LINE: usize = 8;
+/// The share of all edges, from the least blurred, whose variance is taken. With fewer noise would decide.
+const SHARPEST: f64 = 0.2;
 /// The fewest edges that say something.
 const FEWEST: usize = 200;
 /// The most that is taken out, as a variance in square pixels: beyond, little is left to be told.
-const MOST: f64 = 0.35;
-/// Less is not worth it.
+pub const MOST: f64 = 0.35;
+/// What is found in pictures without blur that have noise.
 const LEAST: f64 = 0.05;
 /// How much lighter one side is than the other, in shares of the lighter.
 const CONTRAST: f32 = 0.15;
@@ -29,31 +29,18 @@ const CONTRAST: f32 = 0.15;
 const EVEN: f32 = 0.08;
 /// How much may change along an edge where it is crossed, likewise.
 const ALONG: f32 = 0.25;
-/// Lines that are looked at, at most, in pixels.
+/// The most pixels that edges are looked for at: of more, every so manieth row.
 const LOOKED_AT: usize = 1 << 22;
 
-/// Linear light of sRGB-encoded codes.
-struct Linear(Vec<f32>);
-
-impl Linear {
-    fn new() -> Self {
-        let value = |code: u32| srgb_decode(f64::from(code) / 65535.0) as f32;
-        Self((0..1 << 16).map(value).collect())
-    }
-
-    fn of(&self, code: u16) -> f32 {
-        self.0[usize::from(code)]
-    }
-}
-
-/// The variance in square pixels, along each axis, by which photographs spread what is drawn; 0 where
-/// too few edges tell. `albedo` is sRGB-encoded, in rows of `width`.
-pub fn spread(albedo: &[[u16; 3]], width: usize) -> f64 {
+/// The variance in square pixels, along each axis, by which photographs blur what is drawn, and
+/// [`MOST`] where it is more; 0 where it is hardly any, or too few edges tell. `albedo` is
+/// sRGB-encoded, in rows of `width`.
+pub fn blur(albedo: &[[u16; 3]], width: usize) -> f64 {
     let height = albedo.len().checked_div(width).unwrap_or(0);
     if width < LINE || height < LINE {
         return 0.0;
     }
-    let linear = Linear::new();
+    let linear = LinearCodes::new();
     let every = albedo.len().div_ceil(LOOKED_AT);
     let rows = (1..height - 1).into_par_iter().step_by(every);
     let of_row = |y: usize| -> Vec<f64> {
@@ -61,16 +48,17 @@ pub fn spread(albedo: &[[u16; 3]], width: usize) -> f64 {
             let [r, g, b] = albedo[y * width + x].map(|code| linear.of(code));
             0.25 * r + 0.5 * g + 0.25 * b
         };
+        // The last one before the middle.
+        const BEFORE: usize = LINE / 2 - 1;
+        let within = |at: usize, count: usize| (BEFORE..count - LINE / 2).contains(&at);
         let mut found = Vec::new();
         for x in 1..width - 1 {
-            // Their middles are here, along a row and along a column.
-            let half = LINE / 2;
-            if (half..width - half).contains(&x) {
-                let line = std::array::from_fn(|i| light(x + i - half, y));
+            if within(x, width) {
+                let line = std::array::from_fn(|i| light(x + i - BEFORE, y));
                 found.extend(variance(line, light(x, y + 1) - light(x, y - 1)));
             }
-            if (half..height - half).contains(&y) {
-                let line = std::array::from_fn(|i| light(x, y + i - half));
+            if within(y, height) {
+                let line = std::array::from_fn(|i| light(x, y + i - BEFORE));
                 found.extend(variance(line, light(x + 1, y) - light(x - 1, y)));
             }
         }
@@ -81,28 +69,25 @@ pub fn spread(albedo: &[[u16; 3]], width: usize) -> f64 {
         return 0.0;
     }
     let at = (SHARPEST * found.len() as f64) as usize;
-    let sharpest = *found.select_nth_unstable_by(at, f64::total_cmp).1;
-    let spread = (sharpest - UNSPREAD).min(MOST);
-    if spread < LEAST { 0.0 } else { spread }
+    let least = *found.select_nth_unstable_by(at, f64::total_cmp).1;
+    if least < LEAST { 0.0 } else { least.min(MOST) }
 }
 
-/// The variance of the differences along a line, where it crosses an edge in its middle; `along` is
-/// what changes along the edge.
+/// The variance that blur gives to the differences along a line, where it crosses an edge in its
+/// middle; `along` is what changes along the edge.
 fn variance(line: [f32; LINE], along: f32) -> Option<f64> {
     let [a, b, .., c, d] = line;
     let (first, last) = (0.5 * (a + b), 0.5 * (c + d));
     let contrast = last - first;
     let size = contrast.abs();
-    // Also where something is no number.
     let stands_out = size > CONTRAST * first.max(last);
     if !stands_out || (b - a).abs().max((d - c).abs()) > EVEN * size || along.abs() > ALONG * size {
         return None;
     }
     let share = line.map(|v| f64::from((v - first) / contrast));
-    // Nearest to the half, so that each edge is met once.
+    // It rises beyond the half there, and nowhere else.
     let middle = LINE / 2;
-    let near = |i: usize| (share[i] - 0.5).abs();
-    if near(middle) >= near(middle - 1) || near(middle) > near(middle + 1) {
+    if share[middle - 1] >= 0.5 || share[middle] < 0.5 {
         return None;
     }
     // What sides are uneven by does not count: that far out it would weigh most.
@@ -116,11 +101,14 @@ fn variance(line: [f32; LINE], along: f32) -> Option<f64> {
         let each = each.map(|(i, step)| step * (i as f64 - from).powi(power));
         each.sum::<f64>() / sum
     };
-    Some(moment(2, moment(1, 0.0)))
+    let mean = moment(1, 0.0);
+    let p = mean - mean.floor();
+    Some(moment(2, mean) - p * (1.0 - p))
 }
 
-/// Colours from which a spread of this variance along each axis is taken out: of K, which spreads, by
-/// the first terms of K⁻¹ = 1 + (1 − K) + (1 − K)² + …
+/// Colours from which a blur of this variance along each axis is taken out: of K, which blurs, by the
+/// first terms of K⁻¹ = 1 + (1 − K) + (1 − K)² + …, which give two thirds of the finest detail
+/// back that [`MOST`] takes away, and nearly all of what is lost otherwise.
 pub fn sharpened(albedo: &[[u16; 3]], width: usize, variance: f64) -> Vec<[u16; 3]> {
     /// Rows that are worked on together, with those around them.
     const TOGETHER: usize = 32;
@@ -129,7 +117,7 @@ pub fn sharpened(albedo: &[[u16; 3]], width: usize, variance: f64) -> Vec<[u16; 
     if height == 0 {
         return sharp;
     }
-    let (linear, codes) = (Linear::new(), SrgbCodes::new());
+    let (linear, codes) = (LinearCodes::new(), SrgbCodes::new());
     let weights = inverse(variance);
     // Beyond the edge it goes on as at it.
     let around = |i: usize, count: usize| -> [usize; TAPS] {
@@ -216,7 +204,7 @@ mod tests {
         (0..SIZE * SIZE).map(pixel).collect()
     }
 
-    fn spread_by(values: &[f64], variance: f64) -> Vec<f64> {
+    fn blurred(values: &[f64], variance: f64) -> Vec<f64> {
         let at = |x: usize, y: usize| values[y.min(SIZE - 1) * SIZE + x.min(SIZE - 1)];
         let weights = [variance / 2.0, 1.0 - variance, variance / 2.0];
         (0..SIZE * SIZE)
@@ -238,7 +226,7 @@ mod tests {
 
     /// How far from what was drawn, root of the mean square in linear light.
     fn off(found: &[[u16; 3]], drawn: &[f64]) -> f64 {
-        let linear = Linear::new();
+        let linear = LinearCodes::new();
         let pairs = found.iter().zip(drawn);
         let sum: f64 = pairs
             .map(|(found, drawn)| (f64::from(linear.of(found[1])) - drawn).powi(2))
@@ -247,12 +235,12 @@ mod tests {
     }
 
     #[test]
-    fn what_spreads_edges_is_found_and_taken_out() {
+    fn what_blurs_edges_is_found_and_taken_out() {
         for noise in [0.0, 0.02, 0.04] {
             let sharp = drawn(noise);
             for variance in [0.0, 0.15, 0.25, 0.33] {
-                let shown = encoded(&spread_by(&sharp, variance));
-                let found = spread(&shown, SIZE);
+                let shown = encoded(&blurred(&sharp, variance));
+                let found = blur(&shown, SIZE);
                 eprintln!("{noise} {variance}: {found:.3}");
                 assert!(
                     (found - variance).abs() < 0.06,
@@ -268,16 +256,34 @@ mod tests {
     }
 
     #[test]
+    fn ruled_edges_are_sharp_wherever_they_lie_in_a_pixel() {
+        // Rectangles whose edges lie on the pixels', or share all of theirs alike.
+        for share in [0.0, 0.2, 0.5, 0.9] {
+            let ruled = |at: usize| match at % 24 {
+                8 => share,
+                9..20 => 1.0,
+                20 => 1.0 - share,
+                _ => 0.0,
+            };
+            let lies = |i: usize| ruled(i % SIZE) * ruled(i / SIZE);
+            let sharp: Vec<f64> = (0..SIZE * SIZE).map(|i| 0.7 - 0.58 * lies(i)).collect();
+            assert_eq!(blur(&encoded(&sharp), SIZE), 0.0, "{share}");
+            let found = blur(&encoded(&blurred(&sharp, 0.25)), SIZE);
+            assert!((found - 0.25).abs() < 0.02, "{share}: {found}");
+        }
+    }
+
+    #[test]
     fn without_edges_nothing_is_found() {
         let even = vec![[40_000; 3]; SIZE * SIZE];
-        assert_eq!(spread(&even, SIZE), 0.0);
-        assert_eq!(spread(&even[..5 * SIZE], SIZE), 0.0);
-        assert_eq!(spread(&[], 0), 0.0);
+        assert_eq!(blur(&even, SIZE), 0.0);
+        assert_eq!(blur(&even[..5 * SIZE], SIZE), 0.0);
+        assert_eq!(blur(&[], 0), 0.0);
         // Light that changes slowly has no edges.
         let slow: Vec<f64> = (0..SIZE * SIZE)
             .map(|i| 0.4 + 0.3 * ((i % SIZE) as f64 / 15.0).sin())
             .collect();
-        assert_eq!(spread(&encoded(&slow), SIZE), 0.0);
+        assert_eq!(blur(&encoded(&slow), SIZE), 0.0);
         assert_eq!(sharpened(&[], 0, 0.3), Vec::<[u16; 3]>::new());
         // An even sheet stays as it is, at its corners too.
         let same = sharpened(&even, SIZE, 0.3);

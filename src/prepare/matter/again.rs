@@ -7,11 +7,12 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::{Bench, encoded, linear};
+use super::Bench;
 use crate::{
     optics::medium::Medium,
     prepare::{
         PrepareError,
+        codes::{encoded, linear},
         gloss::{Place, Settler},
         model::Model,
         photographs::Stack,
@@ -60,9 +61,10 @@ pub fn solve(
                 .is_some_and(Option::is_some)
         };
         if !of_band.iter().any(here) {
+            stack.recycle(band);
             continue;
         }
-        let (band, settlers) = (&band, &settlers);
+        let settlers = &settlers;
         let places = maps.albedo[range.clone()].par_iter_mut();
         let places = places
             .zip(&mut maps.normals[range])
@@ -93,6 +95,7 @@ pub fn solve(
                 *rgb = encoded(albedo);
             },
         );
+        stack.recycle(band);
     }
     Ok(())
 }

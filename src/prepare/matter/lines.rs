@@ -7,7 +7,7 @@ use crate::{
     colour::format_hex,
     manifest::SideName,
     optics::medium::{Matter, MediumId},
-    prepare::{Report, SideReport, write::word},
+    prepare::{Report, SideReport, materials::legend::MediaFile, write::word},
 };
 
 fn rounded(v: f64) -> f64 {
@@ -93,6 +93,7 @@ pub fn drawing_lines(report: &Report) -> String {
             out += "[drawing.transmission]\n\
                     map = { file = \"maps/transmission.png\", source = \"fitted\" }\n\n";
         }
+        out += &overlays(side);
         if *depth_white > 0.0 {
             let name = word(side.side);
             let id = match side.side {
@@ -109,6 +110,43 @@ pub fn drawing_lines(report: &Report) -> String {
         }
     }
     out
+}
+
+/// Its maps of media, to be looked at: what a scene shows of them is matter otherwise.
+fn overlays(side: &SideReport) -> String {
+    let name = word(side.side);
+    let overlay = |(i, file): (usize, &MediaFile)| {
+        let of_verso = match side.side {
+            SideName::Recto => "",
+            SideName::Verso => "-verso",
+        };
+        let number = match i {
+            0 => String::new(),
+            i => format!("-{}", i + 1),
+        };
+        let legend = file.legend.iter().map(|(colour, medium)| {
+            format!(
+                "    {{ id = \"{medium}\", colour = \"{}\", label = {{ en = \"{}\" }} }},\n",
+                format_hex(*colour),
+                spoken(medium.name())
+            )
+        });
+        format!(
+            "[[drawing.overlay]]\nid = \"media{of_verso}{number}\"\n\
+             title = {{ en = \"What it is drawn with\" }}\nside = \"{name}\"\nkind = \"categorical\"\n\
+             file = \"maps/{name}/{}\"\nlegend = [\n{}]\nsource = \"fitted\"\n\n",
+            file.name,
+            legend.collect::<String>()
+        )
+    };
+    side.matter.files.iter().enumerate().map(overlay).collect()
+}
+
+/// A medium's name in words: "Lead point".
+fn spoken(name: &str) -> String {
+    let mut letters = name.chars();
+    let first = letters.next().map(|letter| letter.to_ascii_uppercase());
+    first.into_iter().collect::<String>() + &letters.as_str().replace('-', " ")
 }
 
 /// Media with the constants that were found, each once: of both sides, where both show it, as the

@@ -26,6 +26,7 @@ use rayon::prelude::*;
 use super::{
     PrepareError,
     capture::{Capture, Crop, Shots},
+    codes::{encoded, linear},
     colour::correct::Correction,
     depth::{self, InkDepth},
     flat_field::FlatField,
@@ -42,7 +43,6 @@ use super::{
     write::SideFiles,
 };
 use crate::{
-    colour::{srgb_decode, srgb_encode},
     manifest::SideName,
     maps::{Level, Pyramid, Texels, bare_albedo},
     optics::medium::{Matter, Medium, MediumId},
@@ -149,7 +149,17 @@ impl Gathering {
             normals,
             gloss: &gloss,
         };
-        let classified = materials::classify(&seen, &swatches);
+        let mut classified = materials::classify(&seen, &swatches);
+        // In pixels of the photographs, as the capture file has them.
+        for told in classified.iter_mut().flat_map(|(_, of)| &mut of.swatches) {
+            let (rect, crop) = (&mut told.swatch.rect, bench.shots.crop);
+            for x in [&mut rect.left, &mut rect.right] {
+                *x += crop.left;
+            }
+            for y in [&mut rect.top, &mut rect.bottom] {
+                *y += crop.top;
+            }
+        }
         drop(gloss);
         let (classes, materials) = match classified {
             Some((classes, materials)) => (classes, Some(materials)),
@@ -383,16 +393,6 @@ impl Sheet<'_, '_> {
     }
 }
 
-fn linear(rgb: [u16; 3]) -> DVec3 {
-    DVec3::from(rgb.map(|v| srgb_decode(f64::from(v) / 65535.0)))
-}
-
-fn encoded(linear: DVec3) -> [u16; 3] {
-    // Casts saturate.
-    let encode = |v: f64| (srgb_encode(v).clamp(0.0, 1.0) * 65535.0).round() as u16;
-    linear.to_array().map(encode)
-}
-
 fn set_roughness(medium: &mut Medium, alpha: Option<f64>) {
     let of = match &mut medium.matter {
         Matter::Film(film) => &mut film.roughness,
@@ -410,7 +410,7 @@ fn light(albedo: &[[u16; 3]], [width, height]: [usize; 2]) -> [f64; 3] {
     let rows = (0..height).step_by(step);
     let texels: Vec<u16> = rows
         .flat_map(|y| (0..width).step_by(step).map(move |x| y * width + x))
-        .flat_map(|i| albedo[i].map(|v| (srgb_decode(f64::from(v) / 65535.0) * 65535.0) as u16))
+        .flat_map(|i| linear(albedo[i]).to_array().map(|v| (v * 65535.0) as u16))
         .collect();
     bare_albedo(&Pyramid {
         channels: 3,

@@ -9,7 +9,7 @@ use crate::{
         Report, SideReport,
         capture::{BARE_PAPER, Capture},
         gloss::{Roughness, first::Surfaces},
-        materials::{BETTER, Materials, features, legend, network, ways::Method},
+        materials::{BETTER, Materials, features, legend, network, sharpness, ways::Method},
     },
 };
 
@@ -165,6 +165,19 @@ fn of_surfaces(surfaces: &Surfaces) -> String {
     )
 }
 
+/// What was done about a blur of this variance in square pixels: a sentence, or nothing.
+fn of_blur(variance: f64) -> String {
+    if variance <= 0.0 {
+        return String::new();
+    }
+    format!(
+        " The sharpest edges of the sheet look blurred by {:.2} pixels (one standard deviation), which was taken out of \
+         the colours that materials were told by; no more than {:.2} is.",
+        variance.sqrt(),
+        sharpness::MOST.sqrt()
+    )
+}
+
 fn of_materials(materials: &Materials) -> String {
     let mut out = format!(
         "<h3>Materials</h3><p>Told apart by {}, learnt from blocks of the swatches, and small swatches as a \
@@ -179,14 +192,7 @@ fn of_materials(materials: &Materials) -> String {
             false => "where the sheet is light, as no swatch shows it",
         },
         materials.unlike * 100.0,
-        match materials.spread > 0.0 {
-            true => format!(
-                " Edges are spread by {:.2} pixels (one standard deviation) in the photographs, which was taken out of \
-                 the colours that materials were told by.",
-                materials.spread.sqrt()
-            ),
-            false => String::new(),
-        },
+        of_blur(materials.blur),
     );
     for trial in &materials.trials {
         let how = match trial.way.method {
@@ -200,7 +206,7 @@ fn of_materials(materials: &Materials) -> String {
             Method::Discriminant => trial.way.to_string(),
         };
         let taken = match trial.way == materials.chosen {
-            true => " (taken)",
+            true => " (taken: what sees more is only where it does better by that much)",
             false => "",
         };
         let _ = write!(
@@ -211,9 +217,9 @@ fn of_materials(materials: &Materials) -> String {
         );
     }
     out += "</table><table><tr><th>Material<th>Colour in the map<th>Share of the side\
-            <th>Learnt from<th>Found, of held-out places";
+            <th>Learnt from so many places<th>Found, of held-out places";
     for medium in &materials.media {
-        let _ = write!(out, "<th>taken for {}", name(*medium));
+        let _ = write!(out, "<th>places taken for {}", name(*medium));
     }
     let confusion = materials.confusion();
     for (class, medium) in materials.media.iter().enumerate() {
@@ -239,4 +245,19 @@ fn of_materials(materials: &Materials) -> String {
     }
     out += "</table>";
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blur_is_told_where_it_was_taken_out() {
+        assert_eq!(of_blur(0.0), "");
+        let told = of_blur(0.09);
+        assert!(
+            told.contains(" 0.30 pixels") && told.contains("than 0.59"),
+            "{told}"
+        );
+    }
 }

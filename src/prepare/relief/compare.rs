@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use super::transform::Real;
+use super::real::Real;
 use crate::prepare::linear::solve_positive;
 
 /// Mean and standard deviation of a difference.

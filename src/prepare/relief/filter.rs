@@ -94,7 +94,7 @@ impl Coarse {
     /// A vector for each pixel of a picture of this size.
     pub fn sampled(&self, [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
         let mut all = vec![[0.0; 3]; width * height];
-        if width > 0 {
+        if !all.is_empty() && !self.vectors.is_empty() {
             let across = self.across(width);
             all.par_chunks_mut(width)
                 .enumerate()

@@ -22,7 +22,10 @@
 
 use rayon::prelude::*;
 
-use super::transform::{Kind, Line, Real, transform};
+use super::{
+    real::Real,
+    transform::{Kind, Line, transform},
+};
 
 /// What is asked of the perimeter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,11 +5,13 @@
 //! | normals → shape, and grain and strokes | [`filter`] |
 //! | normals → heights | [`integrate`] |
 //! | cosine and sine transforms | `transform` |
+//! | in double precision or in single | `real` |
 //! | heights of two surfaces, and their planes | [`compare`] |
 //! | heights → mesh, and another surface → heights | [`surface`] |
 
 pub mod compare;
 pub mod filter;
 pub mod integrate;
+pub(super) mod real;
 pub mod surface;
-pub(super) mod transform;
+mod transform;

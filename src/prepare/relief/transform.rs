@@ -6,45 +6,9 @@
 use std::{f64::consts::PI, sync::Arc};
 
 use rayon::prelude::*;
-use rustfft::{Fft, FftNum, FftPlanner, num_complex::Complex};
+use rustfft::{Fft, FftPlanner, num_complex::Complex};
 
-/// What heights are computed in: f64, or f32, which takes half the memory and half the time where a
-/// millionth of their range is enough.
-pub trait Real: FftNum + Default + PartialOrd {
-    /// The nearest of its values.
-    fn of(value: f64) -> Self;
-    fn wide(self) -> f64;
-    /// Slopes as they are stored, in the same memory where it can be.
-    fn of_all(values: Vec<f32>) -> Vec<Self>;
-}
-
-impl Real for f64 {
-    fn of(value: f64) -> Self {
-        value
-    }
-
-    fn wide(self) -> f64 {
-        self
-    }
-
-    fn of_all(values: Vec<f32>) -> Vec<Self> {
-        values.par_iter().map(|value| Self::from(*value)).collect()
-    }
-}
-
-impl Real for f32 {
-    fn of(value: f64) -> Self {
-        value as Self
-    }
-
-    fn wide(self) -> f64 {
-        self.into()
-    }
-
-    fn of_all(values: Vec<f32>) -> Vec<Self> {
-        values
-    }
-}
+use super::real::Real;
 
 /// What a line is expanded into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,10 @@ use std::fmt::Write as _;
 use super::escaped;
 use crate::{
     manifest::SideName,
+    optics::medium::MediumId,
     prepare::{
+        capture::BARE_PAPER,
+        materials::SwatchTold,
         run::{Report, SideReport},
         stereo::left_out::Relit,
     },
@@ -28,6 +31,8 @@ const RISE: f64 = 0.10;
 const DIFFERS: f64 = 0.10;
 /// The least share of each material's held-out places that is found.
 const FOUND: f64 = 0.90;
+/// The least share of a swatch's places that are told as it says.
+const MIXED: f64 = 0.5;
 /// The share of a side that may be like no swatch.
 const UNLIKE: f64 = 0.20;
 
@@ -316,6 +321,29 @@ fn materials(report: &Report) -> Findings {
                 percent(materials.unlike)
             )
         });
+        for told in &materials.swatches {
+            found.limit(MIXED, told.right, || {
+                let SwatchTold {
+                    swatch,
+                    right,
+                    taken_for,
+                } = told;
+                let rect = swatch.rect;
+                let word = |medium: Option<MediumId>| medium.map_or(BARE_PAPER, MediumId::name);
+                format!(
+                    "of the swatch of {} at [{}, {}, {}, {}] on the {name} only {} are told so, most others as {}; \
+                     draw it again if it shows more than one material, or add swatches of the lighter and darker \
+                     of both",
+                    word(swatch.medium),
+                    rect.left,
+                    rect.top,
+                    rect.right,
+                    rect.bottom,
+                    percent(*right),
+                    word(*taken_for)
+                )
+            });
+        }
         match materials.confusion().filter(|held| held.total() > 0) {
             None => found.missing.push(format!(
                 "the swatches of the {name} are too small to check by a part of them; make them larger"
@@ -324,7 +352,7 @@ fn materials(report: &Report) -> Findings {
                 let right = held_out.accuracy();
                 found.limit(FOUND, right, || {
                     format!(
-                        "on the {name} only {} of what the swatches show is told right; see below what is \
+                        "on the {name} only {} of what the swatches show is told right; see in report.html what is \
                          taken for what, and add swatches of these from other places",
                         percent(right)
                     )
@@ -383,7 +411,7 @@ pub(super) fn section(report: &Report) -> String {
         let _ = write!(out, " Good: {good}.");
     }
     if !missing.is_empty() {
-        let _ = write!(out, " Not all is measured of {missing}.");
+        let _ = write!(out, " Not everything was measured about {missing}.");
     }
     out += "</p><ul>";
     for verdict in &verdicts {
@@ -406,13 +434,14 @@ pub(super) fn section(report: &Report) -> String {
          {:.0} % left over at half of all places, or one shifted by more than {SHIFT_PX} pixels. Colour: \
          mean ΔE00 of the corrected chart above {DELTA_E:.0}. Shape: a rise above {:.0} % of the \
          longer side, or more than {:.0} % of it between it and another surface. Materials: less than \
-         {:.0} % of held-out places told right, or more than {:.0} % like no swatch.</p></details>",
+         {:.0} % of held-out places or {:.0} % of a swatch told right, or more than {:.0} % like no swatch.</p></details>",
         1.0 / SPREAD,
         DOUBTED * 100.0,
         LEFT_OVER * 100.0,
         RISE * 100.0,
         DIFFERS * 100.0,
         FOUND * 100.0,
+        MIXED * 100.0,
         UNLIKE * 100.0,
     );
     out

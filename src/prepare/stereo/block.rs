@@ -2,7 +2,7 @@
 //! instructions.
 //!
 //! Most of a sheet's time goes into it. Those that call these functions most ([`super::fit`]'s
-//! `facing` and `albedo`, [`super::refine`]'s `light`) are compiled for vectors of 256 bits as well, by
+//! `facing` and `albedo`, [`super::refine`]'s `light` and steps) are compiled for vectors of 256 bits as well, by
 //! `pulp`, which are used where the processor has them: what they call has to be inlined for that. What
 //! is found is the same.
 //!

@@ -29,7 +29,7 @@ const ROUNDS: usize = 6;
 const MOST_GLEAM: f32 = 0.8;
 /// The share of gloss at which a value counts half, where photographs contradict each other.
 const DOUBTED_GLEAM: f32 = 0.15;
-/// What g is still off by after the last round, in shares of it: 0.03°.
+/// What a round may move g by, in shares of it, to be the last: 0.03°.
 const STILL: f32 = 5e-4;
 /// How far paper is from a diffuser, in shares of a value.
 const NOT_LAMBERT: f32 = 0.05;
@@ -276,8 +276,6 @@ impl Block {
             self.gleaming.fill([0.0; LANES]);
         }
         let mut g = solve(&self.plain);
-        // What the round before moved g by, which nothing is known of yet.
-        let mut before = [0.0f32; LANES];
         for round in 0..ROUNDS {
             // Half of a step: a narrow gleam turns the normal, which moves the gleam. Of nothing, the
             // first guess is nearer.
@@ -306,18 +304,9 @@ impl Block {
                 }
             }
             g = next;
-            // Rounds that shrink by one share go on to be moved²/(before − moved) in all.
-            let mut left = moved;
-            for lane in 0..LANES {
-                if moved[lane] < before[lane] {
-                    let ahead = moved[lane] * moved[lane] / (before[lane] - moved[lane]);
-                    left[lane] = ahead.min(moved[lane]);
-                }
-            }
-            if block::most(&left) < STILL * block::most(&length) {
+            if block::most(&moved) < STILL * block::most(&length) {
                 break;
             }
-            before = moved;
         }
         g
     }

@@ -287,16 +287,13 @@ impl Row<'_> {
         for (plane, lanes) in albedo.zip(&shown.albedo).chain(residual) {
             let lanes = &lanes[..places.len()];
             match places {
-                [first, .., last] if last - first + 1 == LANES => {
-                    if let (Some(out), Some(all)) = (
-                        plane[*first..].first_chunk_mut::<LANES>(),
-                        lanes.first_chunk::<LANES>(),
-                    ) {
-                        *out = *all;
-                    }
-                }
                 [first, .., last] if last - first + 1 == lanes.len() => {
-                    plane[*first..=*last].copy_from_slice(lanes);
+                    let out = &mut plane[*first..=*last];
+                    // Of a known length they are copied without a call.
+                    match (out.as_mut_array::<LANES>(), lanes.as_array::<LANES>()) {
+                        (Some(out), Some(lanes)) => *out = *lanes,
+                        _ => out.copy_from_slice(lanes),
+                    }
                 }
                 _ => {
                     for (&x, value) in places.iter().zip(lanes) {
