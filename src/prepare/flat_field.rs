@@ -61,7 +61,8 @@ pub struct FlatField {
 
 impl FlatField {
     /// Reads the photograph of a card that reflects `reflectance` of the light; `crop` is what of
-    /// it is needed; where its cells are large, every row is not read. `ambient` shows the card with all lamps off, and is taken from it.
+    /// it is needed. Of large cells some rows are read. `ambient` shows the card with all lamps
+    /// off, and is taken from it.
     ///
     /// # Errors
     /// [`FlatFieldError`].

@@ -5,7 +5,7 @@ use std::{path::PathBuf, sync::OnceLock};
 use glam::DVec3;
 use recto::{
     colour::{delta_e00, lab_from_linear},
-    manifest::Exhibit,
+    manifest::{Exhibit, exhibit::OverlayKind},
     maps::{self, ColourEncoding},
     optics::medium::{Matter, MediumId},
     prepare::{
@@ -130,6 +130,34 @@ fn media_are_told_apart() {
     assert!(share >= AGREE, "{share}");
     let sum: f64 = materials.coverage.iter().sum();
     assert!((sum - 1.0).abs() < 1e-9 && materials.paper_shown);
+    assert!(!materials.swatches.is_empty());
+    for told in &materials.swatches {
+        assert!(told.right >= AGREE, "{told:?}");
+    }
+}
+
+#[test]
+fn the_map_of_media_is_an_overlay_with_its_legend() {
+    let (_, out, report) = prepared();
+    let (exhibit, _) = Exhibit::read(out).unwrap_or_else(|faults| panic!("{faults}"));
+    let overlays = &exhibit.drawings[0].overlays;
+    let media = overlays.iter().find(|overlay| overlay.id == "media");
+    let media = media.expect("an overlay");
+    let OverlayKind::Categorical(legend) = &media.kind else {
+        panic!("{media:?}")
+    };
+    let named: Vec<Option<&str>> = legend.iter().map(|entry| entry.id.as_deref()).collect();
+    let drawn = materials(report).media.iter().flatten();
+    let drawn: Vec<Option<&str>> = drawn.map(|medium| Some(medium.name())).collect();
+    assert_eq!(named, drawn);
+    // The colours of its legend are the picture's.
+    let codes: Vec<[u8; 3]> = legend.iter().map(|entry| entry.colour).collect();
+    let shown = pixels(&out.join("maps/recto/media.png"));
+    for code in &codes {
+        let meets =
+            |p: &[f32; 4]| p[3] > 0.5 && [0, 1, 2].map(|c| (p[c] * 255.0).round() as u8) == *code;
+        assert!(shown.iter().any(meets), "{code:?}");
+    }
 }
 
 #[test]

@@ -85,7 +85,7 @@ pub struct Materials {
     pub coverage: Vec<f64>,
     /// The share of the side that is like no swatch.
     pub unlike: f64,
-    /// How many of each swatch's places are told as it says.
+    /// How the places of each swatch are told.
     pub swatches: Vec<SwatchTold>,
     /// The variance in square pixels of the blur that was taken out of the colours before, as
     /// [`sharpness::blur`] found it.

@@ -21,7 +21,7 @@ const SHARPEST: f64 = 0.2;
 const FEWEST: usize = 200;
 /// The most that is taken out, as a variance in square pixels: beyond, little is left to be told.
 pub const MOST: f64 = 0.35;
-/// What is found in pictures without blur that have noise.
+/// Less is not told from none: noise moves what is found by as much.
 const LEAST: f64 = 0.05;
 /// How much lighter one side is than the other, in shares of the lighter.
 const CONTRAST: f32 = 0.15;
